@@ -1,0 +1,1 @@
+#include "penumbra/math.h"

@@ -1,0 +1,79 @@
+// Pictures: linear float images, textures in their own bit depth, and their files.
+//
+// Every file format goes through OpenImageIO, which lives in a module that is loaded when the
+// first function of this header that touches a file is called (it costs 0.3 s to start).
+#pragma once
+
+#include "penumbra/math.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace penumbra {
+
+/// Row-major, top row first, linear RGB, unclamped.
+struct Image {
+    int width = 0, height = 0;
+    std::vector<Color> pixels = {};  ///< width * height
+
+    Image() = default;
+    Image(int w, int h) : width(w), height(h), pixels(std::size_t(w) * std::size_t(h)) {}
+
+    Color& at(int x, int y) { return pixels[std::size_t(y) * std::size_t(width) + std::size_t(x)]; }
+    const Color& at(int x, int y) const {
+        return pixels[std::size_t(y) * std::size_t(width) + std::size_t(x)];
+    }
+};
+
+/// Sample type of a Raster; the value is its size in bytes.
+enum class Depth { u8 = 1, u16 = 2, f32 = 4 };
+
+/// Samples as a file holds them: row-major, top row first, channels interleaved, native byte
+/// order. 1 channel is grey, 2 grey + alpha, 3 RGB, 4 RGB + alpha (straight, not premultiplied).
+struct Raster {
+    int width = 0, height = 0, channels = 0;
+    Depth depth = Depth::u8;
+    std::vector<std::byte> data = {};  ///< width * height * channels * size of depth
+
+    std::size_t texels() const { return std::size_t(width) * std::size_t(height); }
+};
+
+/// sRGB decoding of one channel, IEC 61966-2-1, in float32 exactly as POV-Ray does it.
+float srgb_to_linear(float encoded);
+/// sRGB encoding of one linear channel; no clamping (negative values map linearly).
+float linear_to_srgb(float linear);
+
+/// Reads any image file as linear RGB: 8 and 16 bit integers are sRGB-decoded, floats are taken as
+/// linear. Alpha is dropped. Throws Error (input).
+Image load_image(const std::filesystem::path& file);
+
+/// The samples of an image file held in memory; `name` is for messages. Throws Error (input).
+Raster decode_image(std::span<const std::byte> file, const std::string& name);
+
+struct SaveOptions {
+    int bits = 8;  ///< integer formats that can: 8 or 16
+};
+
+/// True when `file` has an extension that save_image() can write:
+/// .png .exr .tif .tiff .jpg .jpeg .hdr
+bool can_save_image(const std::filesystem::path& file);
+
+/// Writes `image` in the format of the extension: .exr (float32) and .hdr linear and unclamped, the
+/// others clamped to [0, 1] and sRGB-encoded. Written beside the target and renamed, so that a
+/// failure leaves what was there. Throws Error (output).
+void save_image(const std::filesystem::path& file, const Image& image,
+                const SaveOptions& options = {});
+
+/// Writes `raster` as it is, as .png (u8, u16) or .exr (f32). Throws Error (output).
+void save_raster(const std::filesystem::path& file, const Raster& raster);
+
+/// `image` as an 8-bit sRGB PNG in memory, for embedding in a report.
+std::vector<std::byte> encode_png(const Image& image);
+
+/// Begins to load the image module in the background, so that a later call need not wait.
+void preload_image_module();
+
+}  // namespace penumbra
