@@ -1,1 +1,70 @@
-#include "penumbra/math.h"
+#include "penumbra/scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace penumbra {
+
+void Bounds::extend(const Vec3& p) {
+    for (int axis = 0; axis < 3; ++axis) {
+        min[axis] = std::min(min[axis], p[axis]);
+        max[axis] = std::max(max[axis], p[axis]);
+    }
+}
+
+Bounds bounds(const Scene& scene) {
+    Bounds box;
+    for (const Instance& instance : scene.instances) {
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        // Only corners of facets count: a file may hold vertices that nothing uses.
+        for (const auto& triangle : mesh.triangles)
+            for (const Index corner : triangle)
+                box.extend(Vec3(mesh.positions[corner]) * instance.transform);
+    }
+    for (const Sphere& sphere : scene.spheres) {
+        box.extend(sphere.center - Vec3(sphere.radius));
+        box.extend(sphere.center + Vec3(sphere.radius));
+    }
+    return box;
+}
+
+std::size_t facet_count(const Scene& scene) {
+    std::size_t count = 0;
+    for (const Instance& instance : scene.instances)
+        count += scene.meshes[instance.mesh].triangles.size();
+    return count;
+}
+
+Vec2 sphere_texcoord(const Vec3& p) {
+    // POV-Ray's sphere uv_mapping, mirrored by `scale <-1, 1, 1>`.
+    const double turn = -std::atan2(p.z, p.x) / (2 * std::numbers::pi);
+    return {turn < 0 ? turn + 1 : turn,
+            0.5 + std::asin(std::clamp(p.y, -1.0, 1.0)) / std::numbers::pi};
+}
+
+PlaneFrame plane_frame(const Plane& plane) {
+    const Vec3 normal = plane.normal.normalized();
+    // Up in the image is world up on a wall and away from the viewer (-z) on a floor or ceiling.
+    const Vec3 up = std::abs(normal.y) > 0.99 ? Vec3(0, 0, -1) : Vec3(0, 1, 0);
+    const Vec3 u = up.cross(normal).normalized();
+    return {.origin = plane.point, .normal = normal, .u = u, .v = normal.cross(u)};
+}
+
+View view_of(const Camera& camera, int width, int height) {
+    const Vec3 forward = camera.direction.normalized();
+    const Vec3 right = forward.cross(camera.up).normalized();
+    const Vec3 up = right.cross(forward);
+    const bool orthographic = camera.projection == Camera::Projection::orthographic;
+    const double side = orthographic ? camera.extent : 2 * std::tan(camera.fov / 2);
+    const double aspect = double(width) / height;
+    const bool horizontal = camera.side == Camera::Side::horizontal;
+    const double across = horizontal ? side : side * aspect;
+    const double along = horizontal ? side / aspect : side;
+    return {.orthographic = orthographic,
+            .location = camera.position,
+            .right = right * across,
+            .up = up * along,
+            .direction = forward};
+}
+
+}  // namespace penumbra

@@ -1,1 +1,197 @@
-#include "penumbra/math.h"
+#include "penumbra/tracer.h"
+
+#include "lighting.h"
+#include "scatter.h"
+#include "shapes.h"
+#include "world.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <atomic>
+#include <cmath>
+#include <mutex>
+
+namespace penumbra {
+
+namespace {
+
+constexpr int tile_side = 32;  // pixels; fixed, so that the picture does not depend on threads
+constexpr int block_side = 4;  // rays of neighbouring pixels share a packet
+
+// A point of a pixel relative to its centre, in pixels, and how much it counts.
+struct PixelSample {
+    double x = 0, y = 0, weight = 1;
+};
+
+// POV-Ray's fixed grid (`+AM1 +R<n> +A0.0 -J`): n x n and the centre once more.
+std::vector<PixelSample> pixel_samples(int n) {
+    if (n <= 1) return {{}};
+    const double weight = 1.0 / (n * n + 1);
+    std::vector<PixelSample> samples = {{0, 0, weight}};
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i)
+            samples.push_back({(i + 0.5) / n - 0.5, (j + 0.5) / n - 0.5, weight});
+    return samples;
+}
+
+// What one thread needs to trace a tile; kept from tile to tile.
+struct Workspace {
+    Generation current, next;
+    Hits hits;
+    Surfaces surfaces;
+    std::vector<std::size_t> ray_of;  // surface point -> ray
+    std::vector<Vec3> radiance;
+    LightWork light;
+    std::vector<Vec3> pixels;  // of the tile
+
+    Workspace()
+        : current(capacity), next(capacity), hits(capacity), surfaces(capacity), radiance(capacity),
+          light(capacity), pixels(capacity) {}
+
+    static constexpr std::size_t capacity = std::size_t(tile_side) * tile_side;
+};
+
+struct Tile {
+    int x = 0, y = 0, width = 0, height = 0;
+};
+
+struct Job {
+    const World& world;
+    const View view;
+    const RenderOptions& options;
+    const std::vector<PixelSample> samples;
+    const Interiors inside;
+};
+
+void add_primary_ray(const Job& job, double x, double y, const Path& path, Generation& rays) {
+    const double u = (x + 0.5) / job.options.width - 0.5;
+    const double v = 0.5 - (y + 0.5) / job.options.height;
+    const Vec3 shift = job.view.right * u + job.view.up * v;
+    if (job.view.orthographic)
+        rays.push(job.view.location + shift, job.view.direction, path);
+    else
+        rays.push(job.view.location, (job.view.direction + shift).normalized(), path);
+}
+
+// Pixels in blocks of 4 x 4, so that the rays of a packet are close together.
+void primary_rays(const Job& job, const Tile& tile, const PixelSample& sample, Generation& rays) {
+    rays.clear();
+    for (int by = 0; by < tile.height; by += block_side)
+        for (int bx = 0; bx < tile.width; bx += block_side)
+            for (int y = by; y < std::min(by + block_side, tile.height); ++y)
+                for (int x = bx; x < std::min(bx + block_side, tile.width); ++x) {
+                    const Path path = {.weight = Vec3(sample.weight),
+                                       .pixel = std::uint32_t(y * tile.width + x),
+                                       .inside = job.inside};
+                    add_primary_ray(job, tile.x + x + sample.x, tile.y + y + sample.y, path, rays);
+                }
+}
+
+void find_hits(const World& world, bool coherent, Workspace& work) {
+    work.hits.assign(work.current.rays.count, Hit{});
+    closest_shapes(world, work.current.rays, work.hits);
+    world.facets.closest(work.current.rays, work.hits, coherent);
+}
+
+void find_surfaces(const World& world, Workspace& work) {
+    const Generation& rays = work.current;
+    if (work.surfaces.pigment.size() < rays.rays.count) {
+        work.surfaces.resize(rays.rays.count);
+        work.light = LightWork(rays.rays.count);
+    }
+    work.surfaces.count = 0;
+    work.ray_of.clear();
+    for (std::size_t i = 0; i < rays.rays.count; ++i) {
+        if (work.hits[i].object == no_index) {
+            work.pixels[rays.paths[i].pixel] += rays.paths[i].weight * Vec3(world.scene.background);
+            continue;
+        }
+        find_surface(world, rays.rays.origin[i], rays.rays.direction[i], work.hits[i],
+                     work.surfaces, work.surfaces.count++);
+        work.ray_of.push_back(i);
+    }
+}
+
+// One generation after the other: all rays of a tile that were reflected equally often are traced
+// together, then what they send on. The recursion of the light model is this loop.
+void trace_generations(const Job& job, Workspace& work) {
+    bool coherent = true;
+    while (work.current.rays.count > 0) {
+        find_hits(job.world, coherent, work);
+        find_surfaces(job.world, work);
+        work.radiance.assign(work.surfaces.count, Vec3(0));
+        add_direct_light(job.world, work.surfaces, work.light, work.radiance);
+        work.next.clear();
+        for (std::size_t k = 0; k < work.surfaces.count; ++k) {
+            const Path& path = work.current.paths[work.ray_of[k]];
+            work.pixels[path.pixel] += path.weight * work.radiance[k];
+            scatter(job.world, work.surfaces, k, path, job.options.max_depth, work.next);
+        }
+        std::swap(work.current, work.next);
+        coherent = false;
+    }
+}
+
+void render_tile(const Job& job, const Tile& tile, Workspace& work, Image& image) {
+    work.pixels.assign(Workspace::capacity, Vec3(0));
+    for (const PixelSample& sample : job.samples) {
+        primary_rays(job, tile, sample, work.current);
+        trace_generations(job, work);
+    }
+    for (int y = 0; y < tile.height; ++y)
+        for (int x = 0; x < tile.width; ++x)
+            image.at(tile.x + x, tile.y + y) =
+                Color(work.pixels[std::size_t(y) * std::size_t(tile.width) + std::size_t(x)]);
+}
+
+std::vector<Tile> tiles_of(int width, int height) {
+    std::vector<Tile> tiles;
+    for (int y = 0; y < height; y += tile_side)
+        for (int x = 0; x < width; x += tile_side)
+            tiles.push_back(
+                {x, y, std::min(tile_side, width - x), std::min(tile_side, height - y)});
+    return tiles;
+}
+
+void render_tiles(const Job& job, const Watch& watch, Image& image) {
+    const std::vector<Tile> tiles = tiles_of(image.width, image.height);
+    tbb::enumerable_thread_specific<Workspace> workspaces;
+    std::atomic<std::size_t> done = 0;
+    std::mutex reporting;
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, tiles.size(), 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+            Workspace& work = workspaces.local();
+            for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                if (watch.stop.stop_requested()) return;
+                render_tile(job, tiles[i], work, image);
+                const std::size_t count = ++done;
+                if (!watch.progress) continue;
+                const std::lock_guard lock(reporting);
+                watch.progress(double(count) / double(tiles.size()));
+            }
+        },
+        tbb::simple_partitioner());
+    if (watch.stop.stop_requested()) throw Error(Failure::interrupted, "", "interrupted");
+}
+
+}  // namespace
+
+Image render(const NormalisedScene& normalised, const RenderOptions& options, const Watch& watch) {
+    const Scene& scene = normalised.scene;
+    Image image(options.width, options.height);
+    tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+    arena.execute([&] {
+        const World world(scene);
+        const View view = view_of(scene.cameras[scene.camera], options.width, options.height);
+        const Job job = {world, view, options, pixel_samples(options.samples),
+                         interiors_at(world, view.location)};
+        render_tiles(job, watch, image);
+    });
+    return image;
+}
+
+}  // namespace penumbra

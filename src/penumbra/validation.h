@@ -8,6 +8,7 @@
 #include "penumbra/watch.h"
 
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -25,7 +26,8 @@ struct Metric {
     double value = 0;
     std::optional<double> limit = {};
     bool at_least = true;   ///< the limit is a minimum (else a maximum)
-    bool ok() const { return !limit || (at_least ? value >= *limit : value <= *limit); }
+    /// A maximum limits the magnitude: `bias` has a sign.
+    bool ok() const { return !limit || (at_least ? value >= *limit : std::abs(value) <= *limit); }
 };
 
 /// Limits of the verdict; a metric without a limit is only reported.

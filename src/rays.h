@@ -1,0 +1,67 @@
+// Rays and hits in arrays: the tracer works on many rays at once.
+#pragma once
+
+#include "penumbra/math.h"
+
+#include <array>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace penumbra {
+
+// POV-Ray 3.7's tolerances, absolute in scene units (source/backend/configbackend.h).
+inline constexpr double least_distance = 1e-4;  ///< of a hit of any but a shadow ray
+inline constexpr double shadow_margin = 1e-3;   ///< at both ends of a shadow ray
+inline constexpr double least_depth = 1e-6;     ///< of a primitive's hit
+inline constexpr double greatest_depth = 1e7;   ///< of a primitive's hit
+inline constexpr double least_cosine = 1e-10;   ///< of a ray to a plane, of light to a surface
+
+inline constexpr double no_hit = std::numeric_limits<double>::infinity();
+
+/// Coordinates of many vectors, one array an axis.
+struct Vectors {
+    std::array<std::vector<double>, 3> axis = {};
+
+    explicit Vectors(std::size_t capacity = 0) { resize(capacity); }
+    void resize(std::size_t count) {
+        for (auto& values : axis) values.resize(count);
+    }
+    Vec3 operator[](std::size_t i) const { return {axis[0][i], axis[1][i], axis[2][i]}; }
+    void set(std::size_t i, const Vec3& v) {
+        axis[0][i] = v.x;
+        axis[1][i] = v.y;
+        axis[2][i] = v.z;
+    }
+};
+
+/// Rays of one generation; the first `count` entries of each array are in use.
+struct Rays {
+    std::size_t count = 0;
+    Vectors origin, direction;  ///< directions are unit
+
+    explicit Rays(std::size_t capacity = 0) : origin(capacity), direction(capacity) {}
+};
+
+/// What one ray hits. Objects count instances first, then spheres, then planes.
+struct Hit {
+    double t = no_hit;
+    Index object = no_index;
+    Index facet = no_index;  ///< of the instance's mesh
+};
+
+using Hits = std::vector<Hit>;
+
+/// Rays from surface points towards one source.
+struct ShadowRays {
+    std::size_t count = 0;
+    Vectors origin, direction;           ///< directions are unit
+    std::vector<double> distance;        ///< to the source
+    std::vector<unsigned char> grazing;  ///< leaves its facet at so small an angle that float32
+                                         ///< could find that facet again
+
+    explicit ShadowRays(std::size_t capacity = 0)
+        : origin(capacity), direction(capacity), distance(capacity), grazing(capacity) {}
+};
+
+}  // namespace penumbra

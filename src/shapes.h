@@ -1,0 +1,31 @@
+// Hits of rays with spheres and infinite planes, in double.
+#pragma once
+
+#include "rays.h"
+#include "world.h"
+
+namespace penumbra {
+
+/// Distances at which a ray crosses a sphere or plane, nearer first; count is 0 to 2.
+struct Crossings {
+    int count = 0;
+    std::array<double, 2> t = {};
+};
+
+/// POV-Ray's sphere test (source/backend/shape/spheres.cpp of 3.7). `direction` is unit.
+Crossings cross_sphere(const Sphere& sphere, const Vec3& origin, const Vec3& direction);
+
+/// POV-Ray's plane test (source/backend/shape/planes.cpp of 3.7). `direction` is unit.
+Crossings cross_plane(const PreparedPlane& plane, const Vec3& origin, const Vec3& direction);
+
+/// Lowers hits where a sphere or plane is nearer than what they hold.
+void closest_shapes(const World& world, const Rays& rays, Hits& hits);
+
+/// Clears visible[i] where an opaque sphere or plane blocks shadow ray i.
+void block_by_shapes(const World& world, const ShadowRays& rays, std::span<unsigned char> visible);
+
+/// The nearest translucent sphere or plane with distance in (nearest, hit.t).
+bool translucent_shape(const World& world, const Vec3& origin, const Vec3& direction,
+                       double nearest, Hit& hit);
+
+}  // namespace penumbra

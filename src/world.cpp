@@ -1,0 +1,64 @@
+#include "world.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace penumbra {
+
+namespace {
+
+Finish prepare(const Material& m, const Color& ambient_light) {
+    Finish f = {.material = &m,
+                .ambient = Vec3(m.ambient) * Vec3(ambient_light),
+                .emission = Vec3(m.emission),
+                .reflection = Vec3(m.reflection),
+                .diffuse = std::max(0.0F, m.diffuse),
+                .specular = std::max(0.0F, m.specular),
+                .shininess = m.shininess,
+                .metallic = m.metallic,
+                .opacity = m.opacity,
+                .ior = m.ior,
+                .mirrors = m.reflection != Color(0)};
+    // cos^N < 1e-9 changes no picture.
+    f.highlight_end = m.shininess > 0 ? std::pow(1e-9, 1 / double(m.shininess)) : 0;
+    return f;
+}
+
+PreparedSource prepare(const Source& s) {
+    PreparedSource p = {.type = s.type,
+                        .position = s.position,
+                        .axis = (s.point_at - s.position).normalized(),
+                        .color = Vec3(s.color),
+                        .cos_inner = std::cos(s.inner),
+                        .cos_outer = std::cos(s.outer)};
+    if (s.attenuation) {
+        p.fades = true;
+        p.fade_distance = s.attenuation->distance;
+        p.fade_power = s.attenuation->power;
+    }
+    return p;
+}
+
+}  // namespace
+
+World::World(const Scene& given) : scene(given), facets(given) {
+    for (const Material& m : scene.materials) {
+        finishes.push_back(prepare(m, scene.ambient));
+        translucent |= m.opacity < 1;
+    }
+    for (const Texture& t : scene.textures) samplers.push_back(make_sampler(t));
+    for (const Light& light : scene.lights)
+        for (const Source& source : virtual_sources(light)) sources.push_back(prepare(source));
+    for (const Plane& plane : scene.planes) {
+        const PlaneFrame frame = plane_frame(plane);
+        planes.push_back({frame, frame.normal.dot(plane.point)});
+    }
+}
+
+Index World::material_of(Index object) const {
+    if (object < first_sphere()) return scene.meshes[scene.instances[object].mesh].material;
+    if (object < first_plane()) return scene.spheres[object - first_sphere()].material;
+    return scene.planes[object - first_plane()].material;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,54 @@
+// A scene made ready for tracing: everything that is the same for all rays is computed once.
+#pragma once
+
+#include "facets.h"
+#include "sampler.h"
+
+#include "penumbra/scene.h"
+
+namespace penumbra {
+
+/// A Material with its float32 numbers widened and combined with the scene's.
+struct Finish {
+    const Material* material = nullptr;
+    Vec3 ambient = {}, emission = {}, reflection = {};  ///< ambient includes Ia
+    double diffuse = 0, specular = 0, shininess = 0, metallic = 0;
+    double opacity = 1, ior = 1;
+    double highlight_end = 0;  ///< below this cosine the highlight is nothing
+    bool mirrors = false;
+};
+
+/// A Source with its cosines and unit axis.
+struct PreparedSource {
+    Light::Type type = Light::Type::point;
+    Vec3 position = {}, axis = {}, color = {};
+    double cos_inner = 0, cos_outer = 0;
+    bool fades = false;
+    double fade_distance = 1, fade_power = 2;
+};
+
+/// A point with normal . p = distance lies on the plane.
+struct PreparedPlane {
+    PlaneFrame frame = {};
+    double distance = 0;
+};
+
+struct World {
+    const Scene& scene;
+    Facets facets;
+    std::vector<Finish> finishes = {};   ///< by material
+    std::vector<Sampler> samplers = {};  ///< by texture
+    std::vector<PreparedSource> sources = {};
+    std::vector<PreparedPlane> planes = {};
+    bool translucent = false;  ///< any object lets light through
+
+    explicit World(const Scene& given);
+
+    // Objects are counted: instances, spheres, planes.
+    Index first_sphere() const { return Index(scene.instances.size()); }
+    Index first_plane() const { return Index(scene.instances.size() + scene.spheres.size()); }
+    Index material_of(Index object) const;
+    const Finish& finish_of(Index object) const { return finishes[material_of(object)]; }
+};
+
+}  // namespace penumbra

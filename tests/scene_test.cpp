@@ -1,0 +1,172 @@
+#include "small_scenes.h"
+#include "support.h"
+
+#include "penumbra/scene.h"
+
+#include <cmath>
+#include <numeric>
+
+using namespace penumbra;
+
+namespace {
+
+Scene one_sphere(double radius, Vec3 center = Vec3(0)) {
+    Scene scene = test::empty_scene();
+    scene.spheres = {{"ball", center, radius, 0}};
+    return scene;
+}
+
+}  // namespace
+
+TEST_CASE("bounds, hold facets in world space and spheres but not planes") {
+    Scene scene = one_sphere(1, {5, 0, 0});
+    scene.planes = {{"floor", {0, -100, 0}, {0, 1, 0}, 0}};
+    test::add_quad(scene, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
+    scene.instances[0].transform.setTranslation(Vec3(0, 0, -7));
+    const Bounds box = bounds(scene);
+    CHECK(box.min == Vec3(0, -1, -7));
+    CHECK(box.max == Vec3(6, 1, 1));
+    CHECK(facet_count(scene) == 2);
+}
+
+TEST_CASE("bounds, of nothing are empty") {
+    CHECK(bounds(test::empty_scene()).empty());
+    CHECK(bounds(test::empty_scene()).radius() == 0);
+}
+
+TEST_CASE("normalise, brings the radius into [8, 16) by a power of two") {
+    const double radius = GENERATE(1e-4, 0.06, 1.0, 4.9, 77.0, 3e5);
+    const NormalisedScene n = normalise(one_sphere(radius), {});
+    const double scaled = bounds(n.scene).radius();
+    CHECK(scaled >= 8);
+    CHECK(scaled < 16);
+    CHECK(std::exp2(std::round(std::log2(n.factor))) == n.factor);
+    CHECK(n.scene.spheres[0].radius == radius * n.factor);
+    CHECK(n.offset == Vec3(0));
+}
+
+TEST_CASE("normalise, moves what is far from the origin and scales all lengths along") {
+    Scene scene = one_sphere(0.5, {1000, 0, 0});
+    Light light = {.position = {1000, 3, 0}};
+    light.attenuation = Attenuation{.distance = 2, .power = 2};
+    light.penumbra.delta = 0.1;
+    scene.lights = {light};
+    scene.materials[0].pattern = Checker{.size = 0.25, .origin = {0, 0, 0}};
+    const NormalisedScene n = normalise(scene, {});
+    CHECK(n.offset == Vec3(1000, 0, 0));
+    CHECK(n.scene.spheres[0].center == Vec3(0));
+    CHECK(n.scene.lights[0].position == Vec3(0, 3 * n.factor, 0));
+    CHECK(n.scene.lights[0].attenuation->distance == 2 * n.factor);
+    CHECK(n.scene.lights[0].penumbra.delta == 0.1 * n.factor);
+    CHECK(std::get<Checker>(n.scene.materials[0].pattern).size == 0.25 * n.factor);
+    CHECK(std::get<Checker>(n.scene.materials[0].pattern).origin.x == -1000 * n.factor);
+}
+
+TEST_CASE("normalise, gives an instanced mesh vertices near world scale and moves no point") {
+    Scene scene = test::empty_scene();
+    test::add_quad(scene, {0, 0, 0}, {1000, 0, 0}, {1000, 1000, 0}, {0, 1000, 0});
+    scene.instances[0].transform.setScale(0.001);
+    const Bounds before = bounds(scene);
+    const NormalisedScene n = normalise(scene, {});
+    const Bounds after = bounds(n.scene);
+    CHECK((after.max / n.factor - before.max).length() < 1e-12);
+    const double scale = std::cbrt(std::abs(n.scene.instances[0].transform.determinant()));
+    CHECK(scale > 0.6);
+    CHECK(scale < 1.5);
+}
+
+TEST_CASE("normalise, folds exposure into everything that shines") {
+    Scene scene = one_sphere(1);
+    scene.lights = {{.intensity = 3}};
+    scene.background = Color(0.25F);
+    scene.materials[0].emission = Color(0.5F);
+    const NormalisedScene n = normalise(scene, {.exposure = 1});
+    CHECK(n.scene.lights[0].intensity == 6);
+    CHECK(n.scene.background == Color(0.5F));
+    CHECK(n.scene.materials[0].emission == Color(1));
+    CHECK(n.scene.ambient == Color(2));
+}
+
+TEST_CASE("virtual sources, of the axes pattern stand at the source and at +-delta") {
+    Light light = {.position = {1, 2, 3}, .intensity = 14};
+    light.penumbra.delta = 0.5;
+    const auto sources = virtual_sources(light);
+    REQUIRE(sources.size() == 7);
+    CHECK(sources[0].position == Vec3(1, 2, 3));
+    CHECK(sources[1].position == Vec3(1.5, 2, 3));
+    CHECK(sources[2].position == Vec3(0.5, 2, 3));
+    CHECK(sources[5].position == Vec3(1, 2, 3.5));
+    CHECK(sources[6].position == Vec3(1, 2, 2.5));
+    for (const Source& s : sources) CHECK(s.color == Color(2));
+}
+
+TEST_CASE("virtual sources, of a sharp light are the light itself") {
+    const auto sources = virtual_sources({.position = {1, 2, 3}, .intensity = 5});
+    REQUIRE(sources.size() == 1);
+    CHECK(sources[0].color == Color(5));
+}
+
+TEST_CASE("virtual sources, of the sphere pattern fill the ball evenly") {
+    Light light;
+    light.penumbra = {.delta = 2, .layout = Penumbra::Layout::sphere, .count = {500, 1}};
+    Vec3 mean(0);
+    int inner = 0;
+    for (const Source& s : virtual_sources(light)) {
+        CHECK(s.position.length() <= 2 + 1e-12);
+        mean += s.position / 500.0;
+        inner += s.position.length() < 2 * std::cbrt(0.5);
+    }
+    CHECK(mean.length() < 0.05);
+    CHECK(inner == Approx(250).margin(15));  // half of the ball's volume holds half of the points
+}
+
+TEST_CASE("virtual sources, of the grid pattern span a square that faces its target") {
+    Light light = {.position = {0, 4, 0}};
+    light.penumbra = {.delta = 1, .layout = Penumbra::Layout::grid, .count = {4, 2}};
+    const auto sources = virtual_sources(light);
+    REQUIRE(sources.size() == 8);
+    Vec3 sum(0);
+    for (const Source& s : sources) {
+        CHECK(s.position.y == Approx(4));
+        CHECK(std::abs(s.position.x) <= 1);
+        CHECK(std::abs(s.position.z) <= 1);
+        sum += s.position - light.position;
+    }
+    CHECK(sum.length() < 1e-12);
+}
+
+TEST_CASE("view, measures the horizontal field of view and keeps pixels square") {
+    Camera camera;
+    camera.fov = radians(90);
+    const View view = view_of(camera, 200, 100);
+    CHECK(view.right.length() == Approx(2));
+    CHECK(view.up.length() == Approx(1));
+    CHECK(view.right.x > 0);
+    CHECK(view.up.y > 0);
+    camera.side = Camera::Side::vertical;
+    CHECK(view_of(camera, 200, 100).up.length() == Approx(2));
+    CHECK(view_of(camera, 200, 100).right.length() == Approx(4));
+}
+
+TEST_CASE("plane frame, lays images upright on walls and away from the viewer on floors") {
+    const PlaneFrame floor = plane_frame({"floor", {0, 0, 0}, {0, 2, 0}, 0});
+    CHECK(floor.u == Vec3(1, 0, 0));
+    CHECK(floor.v == Vec3(0, 0, -1));
+    const PlaneFrame wall = plane_frame({"wall", {0, 0, 0}, {0, 0, 1}, 0});
+    CHECK(wall.u == Vec3(1, 0, 0));
+    CHECK(wall.v == Vec3(0, 1, 0));
+}
+
+TEST_CASE("defects, are named one by one") {
+    Scene scene = one_sphere(-1);
+    scene.spheres[0].material = 4;
+    scene.lights = {{.name = "lamp", .type = Light::Type::spot, .direction = {0, 0, 0}}};
+    scene.cameras[0].up = scene.cameras[0].direction;
+    const auto found = defects(scene);
+    REQUIRE(found.size() == 4);
+    CHECK(found[0] == "sphere 'ball' has a radius that is not positive");
+    CHECK(found[1] == "sphere 'ball' refers to material 4 of 1");
+    CHECK(found[2] == "light 'lamp' has a direction of length zero");
+    CHECK(found[3] == "camera 'eye' looks along its up vector or nowhere");
+    CHECK(defects(one_sphere(1)).empty());
+}
