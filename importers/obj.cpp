@@ -1,1 +1,25 @@
-#include "penumbra/math.h"
+#include "obj.h"
+
+#include "file.h"
+
+namespace penumbra {
+
+Imported read_obj(const std::filesystem::path& file) {
+    const std::string name = file.string();
+    Imported result;
+    obj::Tally tally(name);
+    obj::Text text = obj::clean_obj(read_text(file), name, tally);
+    const std::vector<obj::Named> libraries = std::move(text.libraries);
+    obj::Model model = obj::parse(std::move(text), name, tally);
+    if (model.faces.empty()) throw Error(Failure::input, name, "no facets in it");
+
+    obj::resolve_normals(model, tally);
+    const auto entries = obj::read_libraries(libraries, file, result.losses);
+    const auto frames = obj::build_materials(model, entries, file, result);
+    obj::build_meshes(std::move(model), frames, result.scene, tally);
+    tally.append_to(result.losses);
+    result.models.push_back({.file = name, .format = "OBJ"});
+    return result;
+}
+
+}  // namespace penumbra

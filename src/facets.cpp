@@ -142,6 +142,7 @@ Facets::Facets(const Scene& scene) : scene_(scene), device_(std::make_unique<Dev
                              .smooth = material.smooth && !mesh.normals.empty(),
                              .opaque = material.opacity >= 1};
         translucent_ |= !placed.opaque;
+        instanced_ |= uses[instance.mesh] > 1;
         RTCGeometry geometry =
             uses[instance.mesh] > 1
                 ? device_->instance_of(mesh, instance.mesh, instance.transform)
@@ -248,7 +249,7 @@ bool Facets::translucent(const Vec3& origin, const Vec3& direction, double neare
 
 template <class Width>
 void Facets::closest_packets(const Rays& rays, Hits& hits, bool coherent) const {
-    embree::Query query(coherent);
+    embree::Query query(coherent && !instanced_);
     for (std::size_t first = 0; first < rays.count; first += Width::size) {
         typename Width::RayHits packet;
         alignas(64) std::array<int, Width::size> valid{};
@@ -298,7 +299,7 @@ void Facets::closest_packets(const Rays& rays, Hits& hits, bool coherent) const 
 
 template <class Width>
 void Facets::block_packets(const ShadowRays& rays, std::span<unsigned char> visible) const {
-    embree::Query query(true);
+    embree::Query query(!instanced_);
     for (std::size_t first = 0; first < rays.count; first += Width::size) {
         typename Width::Shadows packet;
         alignas(64) std::array<int, Width::size> valid{};

@@ -75,8 +75,11 @@ class Facets {
     std::unique_ptr<Device> device_;
     bool wide_ = false;         ///< 16 rays a packet, else 8
     bool translucent_ = false;  ///< any facet is
-    Vec3 center_ = {};          ///< of the sphere around all facets
-    double reach_ = 0;          ///< its radius
+    /// Embree 3.13's coherent traversal never returns from rtcOccluded16 on instances, so only
+    /// scenes without them use it.
+    bool instanced_ = false;
+    Vec3 center_ = {};  ///< of the sphere around all facets
+    double reach_ = 0;  ///< its radius
 };
 
 }  // namespace penumbra

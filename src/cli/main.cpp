@@ -1,1 +1,71 @@
-int main() {}
+// The program: command line -> one command -> exit status.
+#include "commands.h"
+#include "interruption.h"
+
+#include <exception>
+#include <new>
+
+namespace penumbra::cli {
+
+int exit_status(Failure failure) {
+    switch (failure) {
+    case Failure::usage: return exit_usage;
+    case Failure::input: return exit_input;
+    case Failure::output: return exit_output;
+    case Failure::povray: return exit_povray;
+    case Failure::interrupted: return exit_interrupted;
+    }
+    return exit_internal;
+}
+
+namespace {
+
+int run(const Arguments& arguments, Console& console) {
+    const Interruption interruption;
+    const Context context = {arguments, console, interruption.token()};
+    switch (arguments.command) {
+    case Command::render: return render(context);
+    case Command::export_scene: return export_scene(context);
+    case Command::validate: return validate(context);
+    case Command::compare: return compare(context);
+    case Command::info: return info(context);
+    }
+    return exit_internal;
+}
+
+// Runs `work` and turns what it throws into a line and a status.
+template <class Work>
+int guarded(Console& console, Work work) {
+    try {
+        return work();
+    } catch (const Error& error) {
+        console.error(error.what());
+        return exit_status(error.failure);
+    } catch (const std::bad_alloc&) {
+        console.internal_error("not enough memory");
+    } catch (const std::exception& error) {
+        console.internal_error(error.what());
+    } catch (...) {
+        console.internal_error("unknown exception");
+    }
+    return exit_internal;
+}
+
+int program(int argc, const char* const* argv) {
+    Parsed parsed;
+    Console plain;
+    const int status = guarded(plain, [&] {
+        parsed = parse(argc, argv);
+        if (!parsed.arguments) plain.result(parsed.text);
+        return int(exit_success);
+    });
+    if (!parsed.arguments) return status;
+    const Arguments& arguments = *parsed.arguments;
+    Console console({arguments.quiet, arguments.verbose, arguments.color});
+    return guarded(console, [&] { return run(arguments, console); });
+}
+
+}  // namespace
+}  // namespace penumbra::cli
+
+int main(int argc, char** argv) { return penumbra::cli::program(argc, argv); }

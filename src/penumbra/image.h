@@ -20,7 +20,8 @@ struct Image {
     std::vector<Color> pixels = {};  ///< width * height
 
     Image() = default;
-    Image(int w, int h) : width(w), height(h), pixels(std::size_t(w) * std::size_t(h)) {}
+    Image(int w, int h)
+        : width(w), height(h), pixels(std::size_t(w) * std::size_t(h), Color(0)) {}
 
     Color& at(int x, int y) { return pixels[std::size_t(y) * std::size_t(width) + std::size_t(x)]; }
     const Color& at(int x, int y) const {
@@ -61,9 +62,9 @@ struct SaveOptions {
 /// .png .exr .tif .tiff .jpg .jpeg .hdr
 bool can_save_image(const std::filesystem::path& file);
 
-/// Writes `image` in the format of the extension: .exr (float32) and .hdr linear and unclamped, the
-/// others clamped to [0, 1] and sRGB-encoded. Written beside the target and renamed, so that a
-/// failure leaves what was there. Throws Error (output).
+/// Writes `image` in the format of the extension: .exr (float32) and .hdr linear and unclamped (but
+/// .hdr has no negative values), the others clamped to [0, 1] and sRGB-encoded. Written beside the
+/// target and renamed, so that a failure leaves what was there. Throws Error (output).
 void save_image(const std::filesystem::path& file, const Image& image,
                 const SaveOptions& options = {});
 

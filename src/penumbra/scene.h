@@ -101,7 +101,7 @@ struct Instance {
 
 struct Sphere {
     std::string name = {};
-    Vec3 center = {};
+    Vec3 center = Vec3(0);
     double radius = 1;
     Index material = no_index;
 };
@@ -109,7 +109,7 @@ struct Sphere {
 /// Infinite, two-sided.
 struct Plane {
     std::string name = {};
-    Vec3 point = {};
+    Vec3 point = Vec3(0);
     Vec3 normal = {0, 1, 0};  ///< need not be unit
     Index material = no_index;
 };
@@ -137,7 +137,7 @@ struct Light {
     enum class Type { point, spot, directional };
     std::string name = {};
     Type type = Type::point;
-    Vec3 position = {};             ///< of point and spot
+    Vec3 position = Vec3(0);             ///< of point and spot
     Vec3 direction = {0, -1, 0};    ///< of spot and directional: where the light goes; unit
     Color color = Color(1);
     double intensity = 1;           ///< Ip
@@ -229,9 +229,9 @@ NormalisedScene normalise(Scene scene, const RenderOptions& options);
 /// A light as both renderers see it: one point without extent.
 struct Source {
     Light::Type type = Light::Type::point;
-    Vec3 position = {};            ///< directional: a point far up the light, outside the scene
-    Vec3 point_at = {};            ///< spot and directional: a point along its axis
-    Color color = {};              ///< Ip x colour / number of virtual sources
+    Vec3 position = Vec3(0);            ///< directional: a point far up the light, outside the scene
+    Vec3 point_at = Vec3(0);            ///< spot and directional: a point along its axis
+    Color color = Color(0);              ///< Ip x colour / number of virtual sources
     double inner = 0, outer = 0;   ///< spot half-angles, radians
     std::optional<Attenuation> attenuation = {};
 };
@@ -246,7 +246,7 @@ Vec2 sphere_texcoord(const Vec3& p);
 /// Texture coordinates of a plane: ((p - origin).u, (p - origin).v) / ImageMap::size. On a floor u
 /// is +x and v is -z; on a wall v is up.
 struct PlaneFrame {
-    Vec3 origin = {}, normal = {}, u = {}, v = {};  ///< unit, perpendicular
+    Vec3 origin = Vec3(0), normal = Vec3(0), u = Vec3(0), v = Vec3(0);  ///< unit, perpendicular
 };
 PlaneFrame plane_frame(const Plane& plane);
 
@@ -256,7 +256,7 @@ PlaneFrame plane_frame(const Plane& plane);
 /// `direction` (orthographic).
 struct View {
     bool orthographic = false;
-    Vec3 location = {}, right = {}, up = {}, direction = {};
+    Vec3 location = Vec3(0), right = Vec3(0), up = Vec3(0), direction = Vec3(0);
 };
 View view_of(const Camera& camera, int width, int height);
 

@@ -41,7 +41,7 @@ Limits profile_limits(const std::string& name);
 
 struct PixelPair {
     int x = 0, y = 0;
-    Color test = {}, reference = {};  ///< linear
+    Color test = Color(0), reference = Color(0);  ///< linear
 };
 
 struct Comparison {

@@ -1,0 +1,188 @@
+#include "pov_material.h"
+#include "pov_plan.h"
+#include "sdl.h"
+
+#include <cmath>
+
+namespace penumbra::pov {
+
+namespace {
+
+constexpr std::size_t line_length = 96;
+
+// Comma-separated items, as many to a line as fit.
+class List {
+  public:
+    List(std::string& out, const char* keyword, std::size_t count) : out_(out) {
+        out_ += "  ";
+        out_ += keyword;
+        out_ += " { ";
+        sdl::append(out_, count);
+        line_start_ = out_.size() - line_length;  // begins a new line
+    }
+    ~List() { out_ += "\n  }\n"; }
+    List(const List&) = delete;
+    List& operator=(const List&) = delete;
+
+    /// Where the next item is appended.
+    std::string& next() {
+        out_ += ',';
+        if (out_.size() - line_start_ >= line_length) {
+            line_start_ = out_.size() + 1;
+            out_ += "\n    ";
+        } else {
+            out_ += ' ';
+        }
+        return out_;
+    }
+
+  private:
+    std::string& out_;
+    std::size_t line_start_ = 0;
+};
+
+void append_vector(std::string& out, const Vec3f& v) {
+    out += '<';
+    sdl::append(out, v.x);
+    out += ',';
+    sdl::append(out, v.y);
+    out += ',';
+    sdl::append(out, v.z);
+    out += '>';
+}
+
+void append_vectors(std::string& out, const char* keyword, const std::vector<Vec3f>& vectors) {
+    List list(out, keyword, vectors.size());
+    for (const Vec3f& v : vectors) append_vector(list.next(), v);
+}
+
+// POV-Ray replaces a normal of length zero by x, and warns.
+void append_normals(std::string& out, const std::vector<Vec3f>& normals) {
+    List list(out, "normal_vectors", normals.size());
+    for (const Vec3f& n : normals) append_vector(list.next(), n == Vec3f(0) ? Vec3f(1, 0, 0) : n);
+}
+
+void append_texcoords(std::string& out, const std::vector<Vec2f>& texcoords) {
+    List list(out, "uv_vectors", texcoords.size());
+    for (const Vec2f& t : texcoords) {
+        std::string& item = list.next();
+        item += '<';
+        sdl::append_fixed(item, t.x);
+        item += ',';
+        sdl::append_fixed(item, t.y);
+        item += '>';
+    }
+}
+
+std::string tint_name(const MeshPlan& mesh, std::size_t tint) {
+    return "Tint_" + mesh.name + "_" + std::to_string(tint + 1);
+}
+
+const Layer& tinted_layer(const std::vector<Layer>& layers) {
+    for (const Layer& layer : layers)
+        if (layer.tinted) return layer;
+    return layers.back();
+}
+
+std::string tinted_texture(const Look& look, const Layer& layer, const Color& tint) {
+    return "texture { pigment " + tinted_pigment(layer, tint) + " finish { " + finish_name(look) +
+           " } }";
+}
+
+// Textures of several layers can only be listed by name.
+void declare_tints(std::string& out, const MeshPlan& mesh, const Look& look,
+                   const std::vector<Layer>& layers) {
+    for (std::size_t i = 0; i < mesh.tints.size(); ++i) {
+        out += "#declare " + tint_name(mesh, i) + " =";
+        if (!layers.front().tinted) out += " texture { " + below_name(look) + " }";
+        out += " " + tinted_texture(look, tinted_layer(layers), mesh.tints[i]);
+        if (!layers.back().tinted) out += " texture { " + above_name(look) + " }";
+        out += '\n';
+    }
+}
+
+void append_texture_list(std::string& out, const MeshPlan& mesh, const Look& look,
+                         const std::vector<Layer>& layers) {
+    out += "  texture_list { " + std::to_string(mesh.tints.size());
+    for (std::size_t i = 0; i < mesh.tints.size(); ++i) {
+        out += ",\n    ";
+        out += layers.size() > 1 ? "texture { " + tint_name(mesh, i) + " }"
+                                 : tinted_texture(look, layers[0], mesh.tints[i]);
+    }
+    out += "\n  }\n";
+}
+
+void append_faces(std::string& out, const Mesh& mesh, const MeshPlan& plan) {
+    List list(out, "face_indices", mesh.triangles.size());
+    for (const auto& [a, b, c] : mesh.triangles) {
+        std::string& item = list.next();
+        item += '<';
+        sdl::append(item, std::size_t(a));
+        item += ',';
+        sdl::append(item, std::size_t(b));
+        item += ',';
+        sdl::append(item, std::size_t(c));
+        item += '>';
+        if (plan.tints.empty()) continue;
+        const Index first = plan.tint_of[a];
+        const bool one = plan.tint_of[b] == first && plan.tint_of[c] == first;
+        for (const Index corner : {a, b, c}) {
+            item += ',';
+            sdl::append(item, std::size_t(plan.tint_of[corner]));
+            if (one) break;  // a third of the shading
+        }
+    }
+}
+
+void append_mesh(std::string& out, const Plan& plan, std::size_t index) {
+    const Mesh& mesh = plan.scene->meshes[index];
+    const MeshPlan& mesh_plan = plan.meshes[index];
+    const Look& look = plan.looks[mesh_plan.look];
+    std::vector<Layer> layers;
+    out += '\n';
+    if (look.tinted) {
+        layers = layers_of(plan, look);
+        if (layers.size() > 1) declare_tints(out, mesh_plan, look, layers);
+    }
+    out += "#declare Mesh_" + mesh_plan.name + " = mesh2 {";
+    if (mesh.name != mesh_plan.name && !mesh.name.empty()) out += "  // " + sdl::comment(mesh.name);
+    out += '\n';
+    append_vectors(out, "vertex_vectors", mesh.positions);
+    if (mesh_plan.normals) append_normals(out, mesh.normals);
+    if (mesh_plan.texcoords) append_texcoords(out, mesh.texcoords);
+    if (look.tinted) append_texture_list(out, mesh_plan, look, layers);
+    append_faces(out, mesh, mesh_plan);
+    out += "  inside_vector <0.1, 1, 0.05>\n}\n";
+}
+
+std::size_t expected_size(const Plan& plan) {
+    std::size_t size = 1000;
+    for (std::size_t i = 0; i < plan.meshes.size(); ++i) {
+        const Mesh& mesh = plan.scene->meshes[i];
+        if (plan.meshes[i].name.empty()) continue;
+        size += 1000 + 35 * mesh.positions.size() + 25 * mesh.triangles.size();
+        if (plan.meshes[i].normals) size += 40 * mesh.positions.size();
+        if (plan.meshes[i].texcoords) size += 30 * mesh.positions.size();
+    }
+    return size;
+}
+
+}  // namespace
+
+std::string geometry_text(const Plan& plan) {
+    std::string out;
+    out.reserve(expected_size(plan));
+    for (std::size_t i = 0; i < plan.meshes.size(); ++i) {
+        if (plan.meshes[i].name.empty()) continue;
+        if (out.empty())
+            out =
+                "// Meshes of " + plan.stem +
+                ".pov, which includes this file.\n"
+                "// inside_vector makes POV-Ray find every facet along a ray; without it a facet\n"
+                "// that is too close to count can hide one behind it.\n";
+        append_mesh(out, plan, i);
+    }
+    return out;
+}
+
+}  // namespace penumbra::pov

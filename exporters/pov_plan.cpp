@@ -1,0 +1,295 @@
+#include "pov_plan.h"
+
+#include "sdl.h"
+
+#include <fmt/format.h>
+#include <half.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <tuple>
+#include <unordered_map>
+
+namespace penumbra::pov {
+
+namespace {
+
+constexpr int most_tiles = 8;           // of a padded image, per axis
+constexpr double most_texels = 64e6;    // of a padded image
+constexpr int most_trace_levels = 256;  // source/backend/configbackend.h, MAX_TRACE_LEVEL
+constexpr int most_subpixels = 9;       // source/backend/scene/view.cpp, Antialias_Depth
+
+// Part of the texture's plane that the scene looks up.
+struct Range {
+    double min = std::numeric_limits<double>::infinity();
+    double max = -std::numeric_limits<double>::infinity();
+    void extend(double x) {
+        min = std::min(min, x);
+        max = std::max(max, x);
+    }
+};
+
+const ImageMap* image_of(const Material& material) {
+    return std::get_if<ImageMap>(&material.pattern);
+}
+
+bool plain(const Material& material) {
+    return std::holds_alternative<std::monostate>(material.pattern);
+}
+
+struct ColorBits {
+    std::array<std::uint32_t, 3> bits;
+    explicit ColorBits(const Color& c)
+        : bits{std::bit_cast<std::uint32_t>(c.x + 0.0F), std::bit_cast<std::uint32_t>(c.y + 0.0F),
+               std::bit_cast<std::uint32_t>(c.z + 0.0F)} {}
+    bool operator==(const ColorBits&) const = default;
+};
+
+struct ColorHash {
+    std::size_t operator()(const ColorBits& c) const {
+        std::size_t hash = c.bits[0];
+        hash = hash * 0x9E3779B97F4A7C15U + c.bits[1];
+        return hash * 0x9E3779B97F4A7C15U + c.bits[2];
+    }
+};
+
+struct Planner {
+    Plan plan = {};
+    const Scene& scene;
+    std::vector<std::array<Range, 2>> ranges = {};  // u and v, per texture
+    std::map<std::tuple<Index, Look::Surface, bool>, Index> known = {};
+    sdl::Names look_names = {}, mesh_names = {}, file_names = {};
+
+    void lose(const Loss& loss) {
+        const Losses& known_losses = plan.losses;
+        if (std::find(known_losses.begin(), known_losses.end(), loss) == known_losses.end())
+            plan.losses.push_back(loss);
+    }
+
+    Index add_look(Look look) {
+        const Material& material = scene.materials[look.material];
+        std::string name = material.name;
+        if (look.surface == Look::Surface::sphere) name += "_sphere";
+        if (look.surface == Look::Surface::plane) name += "_plane";
+        if (look.tinted) name += "_tinted";
+        look.name = look_names.unique(name, std::to_string(plan.looks.size() + 1));
+        plan.looks.push_back(std::move(look));
+        return Index(plan.looks.size() - 1);
+    }
+
+    Index look_of(Index material, Look::Surface surface, bool tinted = false) {
+        if (image_of(scene.materials[material]) == nullptr) surface = Look::Surface::any;
+        const auto [entry, added] = known.try_emplace({material, surface, tinted}, Index(0));
+        if (added)
+            entry->second = add_look({.material = material, .surface = surface, .tinted = tinted});
+        return entry->second;
+    }
+
+    Index look_of(const Plane& plane) {
+        if (image_of(scene.materials[plane.material]) == nullptr)
+            return look_of(plane.material, Look::Surface::plane);
+        return add_look({.material = plane.material,
+                         .surface = Look::Surface::plane,
+                         .frame = plane_frame(plane)});
+    }
+
+    void use_image(const Material& material, const std::array<Range, 2>& part) {
+        const ImageMap* image = image_of(material);
+        if (image == nullptr) return;
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            ranges[image->texture][axis].extend(part[axis].min);
+            ranges[image->texture][axis].extend(part[axis].max);
+        }
+    }
+
+    void find_tints(const Mesh& mesh, MeshPlan& out) {
+        const Color& base = scene.materials[mesh.material].color;
+        std::unordered_map<ColorBits, Index, ColorHash> seen;
+        out.tint_of.reserve(mesh.colors.size());
+        for (const Color& c : mesh.colors) {
+            const auto [entry, added] =
+                seen.try_emplace(ColorBits(base * c), Index(out.tints.size()));
+            if (added) out.tints.push_back(base * c);
+            out.tint_of.push_back(entry->second);
+        }
+    }
+
+    void add_mesh(const Mesh& mesh, MeshPlan& out) {
+        const Material& material = scene.materials[mesh.material];
+        const bool image = image_of(material) != nullptr;
+        const bool tinted =
+            (image || plain(material)) && std::any_of(mesh.colors.begin(), mesh.colors.end(),
+                                                      [](const Color& c) { return c != Color(1); });
+        out.name = mesh_names.unique(mesh.name, std::to_string(&mesh - scene.meshes.data() + 1));
+        out.look = look_of(mesh.material, Look::Surface::mesh, tinted);
+        out.normals = material.smooth && !mesh.normals.empty();
+        out.texcoords = image && !mesh.texcoords.empty();
+        if (tinted) find_tints(mesh, out);
+        if (!image) return;
+        std::array<Range, 2> part;
+        for (const auto& triangle : mesh.triangles) {
+            for (const Index corner : triangle) {
+                part[0].extend(out.texcoords ? double(mesh.texcoords[corner].x) : 0);
+                part[1].extend(out.texcoords ? double(mesh.texcoords[corner].y) : 0);
+            }
+        }
+        use_image(material, part);
+    }
+
+    void add_objects() {
+        std::vector<bool> placed(scene.meshes.size(), false);
+        for (const Instance& i : scene.instances) placed[i.mesh] = true;
+        for (std::size_t k = 0; k < scene.meshes.size(); ++k)
+            if (placed[k] && !scene.meshes[k].triangles.empty())
+                add_mesh(scene.meshes[k], plan.meshes[k]);
+        for (const Sphere& s : scene.spheres) {
+            plan.spheres.push_back(look_of(s.material, Look::Surface::sphere));
+            use_image(scene.materials[s.material], {Range{0, 1}, Range{0, 1}});
+        }
+        for (const Plane& p : scene.planes) {
+            plan.planes.push_back(look_of(p));
+            use_image(scene.materials[p.material], {Range{-1e9, 1e9}, Range{-1e9, 1e9}});
+        }
+    }
+
+    // Texels whose lookup needs no wrapping are left as they are. The border texels of a clamped
+    // image are repeated as far as the scene looks; POV-Ray's own `once` takes a coordinate of
+    // exactly 1 for 0 and anything beyond for a hole.
+    BakedAxis axis(const Texture& texture, Wrap wrap, int size, const Range& range) {
+        if (wrap == Wrap::repeat) return {size, 0, size};
+        if (wrap == Wrap::mirror) return {size, 0, 2 * size};
+        const double slack = 1e-3;  // for coordinates that interpolation rounds
+        const double low = std::floor(range.min * size + 0.5 - slack) - 1;
+        const double high = std::floor(range.max * size + 0.5 + slack);
+        const double first = std::min(0.0, low), last = std::max(size - 1.0, high);
+        if (last - first + 1 <= double(most_tiles) * std::max(size, 2))
+            return {size, int(first), int(last - first + 1)};
+        lose({texture.name, "the clamped image is used so far outside of its "
+                            "edges that it is repeated there"});
+        return {size, low < 0 ? -size : 0, size + (low < 0 ? size : 0) + (high >= size ? size : 0)};
+    }
+
+    // An earlier texture whose file would be the same; models often use an image with several
+    // samplers.
+    const TextureFile* same_file(const Texture& texture, const TextureFile& wanted) const {
+        const Raster& raster = texture.raster;
+        for (std::size_t i = 0; i < scene.textures.size(); ++i) {
+            const Texture& other = scene.textures[i];
+            const TextureFile& file = plan.textures[i];
+            const bool whole_u = wanted.u.count == raster.width;
+            const bool whole_v = wanted.v.count == raster.height;
+            if (!file.file.empty() && file.u == wanted.u && file.v == wanted.v &&
+                (whole_u || other.wrap_u == texture.wrap_u) &&
+                (whole_v || other.wrap_v == texture.wrap_v) &&
+                other.raster.channels == raster.channels && other.raster.depth == raster.depth &&
+                other.raster.data == raster.data)
+                return &file;
+        }
+        return nullptr;
+    }
+
+    void add_texture(const Texture& texture, const std::array<Range, 2>& part, TextureFile& out) {
+        const Raster& raster = texture.raster;
+        out.u = axis(texture, texture.wrap_u, raster.width, part[0]);
+        out.v = axis(texture, texture.wrap_v, raster.height, part[1]);
+        if (double(out.u.count) * out.v.count > most_texels &&
+            (texture.wrap_u != Wrap::repeat || texture.wrap_v != Wrap::repeat)) {
+            lose({texture.name, "the image is too large to hold its mirrored or "
+                                "clamped surroundings, and repeats"});
+            out.u = {raster.width, 0, raster.width};
+            out.v = {raster.height, 0, raster.height};
+        }
+        if (const TextureFile* same = same_file(texture, out)) {
+            out.file = same->file;
+            return;
+        }
+        const bool floats = raster.depth == Depth::f32;
+        const std::size_t slash = texture.name.find_last_of("/\\");
+        std::string name =
+            slash == std::string::npos ? texture.name : texture.name.substr(slash + 1);
+        if (const std::size_t dot = name.rfind('.'); dot != std::string::npos && dot > 0)
+            name.resize(dot);
+        out.file = plan.stem + "_textures/" + file_names.unique(name, "texture") +
+                   (floats ? ".exr" : ".png");
+        if (floats) check_half(texture);
+    }
+
+    // POV-Ray 3.7 reads OpenEXR files in half precision (source/base/image/openexr.cpp).
+    void check_half(const Texture& texture) {
+        const std::vector<std::byte>& data = texture.raster.data;
+        for (std::size_t i = 0; i + sizeof(float) <= data.size(); i += sizeof(float)) {
+            float value = 0;
+            std::memcpy(&value, data.data() + i, sizeof value);
+            if (float(Imath::half(value)) == value) continue;
+            lose({texture.name, "POV-Ray reads float images with 11 significant "
+                                "bits"});
+            return;
+        }
+    }
+
+    void note_approximations() {
+        for (const Look& look : plan.looks) {
+            const Material& m = scene.materials[look.material];
+            const bool product = image_of(m) != nullptr && (look.tinted || m.color != Color(1));
+            if (product && m.metallic > 0)
+                lose({m.name, "the metallic tint of texture times vertex colours "
+                              "is approximate: reflections take the texture's"});
+            if (product && m.opacity < 1)
+                lose({m.name, "vertex colours over a translucent texture also "
+                              "tint what lies behind"});
+        }
+    }
+
+    void note_limits(const RenderOptions& render) {
+        if (render.max_depth > most_trace_levels)
+            lose({"max_depth", fmt::format("POV-Ray follows at most {} ray "
+                                           "segments",
+                                           most_trace_levels)});
+        if (render.samples > most_subpixels)
+            lose({"samples", fmt::format("POV-Ray's grid has at most {0} x {0} "
+                                         "samples",
+                                         most_subpixels)});
+    }
+};
+
+bool plain_stem(const std::string& stem) {
+    const auto harmless = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               c == '_' || c == '-' || c == '.';
+    };
+    return !stem.empty() && stem[0] != '-' && std::all_of(stem.begin(), stem.end(), harmless);
+}
+
+}  // namespace
+
+std::string safe_stem(const std::string& stem) {
+    if (plain_stem(stem)) return stem;
+    // FNV-1a keeps "my chair" apart from "my_chair".
+    std::uint32_t hash = 2166136261U;
+    for (const char c : stem) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
+    const std::string word = sdl::word(stem);
+    return fmt::format("{}_{:04x}", word.empty() ? "scene" : word, (hash ^ (hash >> 16)) & 0xFFFFU);
+}
+
+Plan make_plan(const Scene& scene, const RenderOptions& render, const std::string& stem) {
+    Planner planner{.scene = scene};
+    planner.plan.scene = &scene;
+    planner.plan.stem = safe_stem(stem);
+    planner.plan.meshes.resize(scene.meshes.size());
+    planner.plan.textures.resize(scene.textures.size());
+    planner.ranges.resize(scene.textures.size());
+    planner.add_objects();
+    for (std::size_t i = 0; i < scene.textures.size(); ++i)
+        if (planner.ranges[i][0].min <= planner.ranges[i][0].max)
+            planner.add_texture(scene.textures[i], planner.ranges[i], planner.plan.textures[i]);
+    planner.note_approximations();
+    planner.note_limits(render);
+    return std::move(planner.plan);
+}
+
+}  // namespace penumbra::pov

@@ -1,0 +1,96 @@
+// JSON -> is this a glTF 2 file, and one that the importer can show?
+#include "gltf.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+#include <set>
+#include <utility>
+
+namespace penumbra::gltf {
+namespace {
+
+using nlohmann::json;
+
+// What the importer carries over, or may leave aside because the file has a plain version as well.
+const std::set<std::string> supported = {
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_specular",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_unlit",
+    "KHR_texture_transform",
+    "KHR_mesh_quantization",
+    "KHR_node_visibility",
+    "EXT_texture_webp",
+};
+
+// Compression: the file holds the same data uncompressed unless it requires the extension.
+const std::set<std::string> fallback = {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
+                                        "KHR_meshopt_compression"};
+
+// Required, but the shapes are right without: shown with the plain material, and a loss.
+bool only_appearance(const std::string& extension) {
+    return extension.rfind("KHR_materials_", 0) == 0;
+}
+
+// "2.1" -> {2, 1}; {0, 0} when it is no version.
+std::pair<int, int> version(const json& value) {
+    int major = 0, minor = 0, end = 0;
+    if (!value.is_string()) return {0, 0};
+    const std::string text = value.get<std::string>();
+    if (std::sscanf(text.c_str(), "%4d.%4d%n", &major, &minor, &end) != 2 ||
+        std::size_t(end) != text.size())
+        return {0, 0};
+    return {major, minor};
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+    constexpr std::size_t longest = 80;
+    std::string line(text.substr(0, longest));
+    for (char& c : line)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    return text.size() > longest ? line + "..." : line;
+}
+
+void check_asset(const json& root, const std::string& file, Losses& losses) {
+    if (!root.is_object()) throw Error(Failure::input, file, "the JSON is not an object");
+    if (!root.contains("asset") || !root["asset"].is_object() || !root["asset"].contains("version"))
+        throw Error(Failure::input, file, "there is no asset.version: is this a glTF 2.0 file?");
+
+    const json& asset = root["asset"];
+    const auto [major, minor] = version(asset["version"]);
+    if (major != 2)
+        throw Error(
+            Failure::input, file + "#/asset/version",
+            fmt::format("is {}, only glTF 2 is supported", printable(asset["version"].dump())));
+    if (asset.contains("minVersion") && version(asset["minVersion"]) != std::pair(2, 0))
+        throw Error(
+            Failure::input, file + "#/asset/minVersion",
+            fmt::format("is {}, only 2.0 is supported", printable(asset["minVersion"].dump())));
+
+    const auto names = [&](const char* key) {
+        std::vector<std::string> found;
+        if (!root.contains(key)) return found;
+        if (!root[key].is_array())
+            throw Error(Failure::input, file + "#/" + key, "must be an array");
+        for (const json& name : root[key])
+            if (name.is_string()) found.push_back(name.get<std::string>());
+        return found;
+    };
+    for (const std::string& name : names("extensionsRequired"))
+        if (!supported.count(name) && !only_appearance(name))
+            throw Error(Failure::input, file + "#/extensionsRequired",
+                        fmt::format("the model needs the extension {}, which is not supported",
+                                    printable(name)));
+    for (const std::string& name : names("extensionsUsed"))
+        if (!supported.count(name) && !fallback.count(name))
+            losses.push_back({file + "#/extensionsUsed",
+                              fmt::format("the extension {} is ignored", printable(name))});
+}
+
+}  // namespace penumbra::gltf

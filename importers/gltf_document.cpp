@@ -1,0 +1,151 @@
+// File -> Document.
+#include "file.h"
+#include "gltf.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace penumbra::gltf {
+namespace {
+
+using nlohmann::json;
+
+// The buffers' bytes, each cut to the byteLength that was checked against.
+void load_buffers(Document& document, json& root, Bytes bin) {
+    if (!root.contains("buffers")) return;
+    json& buffers = root["buffers"];
+    for (std::size_t i = 0; i < buffers.size(); ++i) {
+        json& buffer = buffers[i];
+        const std::string place = document.place(fmt::format("/buffers/{}", i));
+        const auto length = buffer["byteLength"].get<std::size_t>();
+        Bytes bytes;
+        if (buffer.contains("uri")) {
+            // A data: URI may be most of the file; it is not kept twice.
+            const std::string uri = std::exchange(buffer["uri"].get_ref<std::string&>(), {});
+            document.storage.push_back(fetch(uri, document.folder, place));
+            bytes = document.storage.back();
+        } else if (i == 0 && !bin.empty()) {
+            bytes = bin;
+        } else {
+            // glTF 2.0, section 3.6.1: a buffer may be left for an extension to fill.
+            document.buffers.emplace_back();
+            continue;
+        }
+        if (bytes.size() < length)
+            throw Error(
+                Failure::input, place,
+                fmt::format("has {} bytes, but its byteLength is {}", bytes.size(), length));
+        document.buffers.push_back(bytes.first(length));
+    }
+}
+
+void list_images(Document& document, json& root) {
+    if (!root.contains("images")) return;
+    for (json& image : root["images"])
+        document.images.push_back({.name = image.value("name", ""),
+                                   .uri = image.value("uri", ""),
+                                   .view = image.value("bufferView", -1)});
+}
+
+void refuse_write(std::string* error) {
+    if (error != nullptr) *error = "nothing is written";
+}
+
+// tinygltf gets no names of files; should a version of it open some all the same, it finds none.
+tinygltf::FsCallbacks no_files() {
+    tinygltf::FsCallbacks files{};
+    files.FileExists = [](const std::string&, void*) { return false; };
+    files.ExpandFilePath = [](const std::string& path, void*) { return path; };
+    files.ReadWholeFile = [](std::vector<unsigned char>*, std::string* error, const std::string&,
+                             void*) {
+        refuse_write(error);
+        return false;
+    };
+    files.WriteWholeFile = [](std::string* error, const std::string&,
+                              const std::vector<unsigned char>&, void*) {
+        refuse_write(error);
+        return false;
+    };
+    return files;
+}
+
+// Since tinygltf 2.9 a fifth callback is needed.
+template <class Callbacks>
+void add_size_callback(Callbacks& files) {
+    if constexpr (requires { files.GetFileSizeInBytes; })
+        files.GetFileSizeInBytes = [](std::size_t*, std::string*, const std::string&, void*) {
+            return false;
+        };
+}
+
+// JSON -> structures. Three things that tinygltf 2.7 refuses although they are valid or harmless
+// are kept from it: buffers without content, accessors without a buffer view that serve as
+// indices, and strides that are no multiple of four.
+tinygltf::Model parse_model(json root, const std::string& file) {
+    for (const char* key : {"buffers", "images", "extras"}) root.erase(key);
+    json& views = root["bufferViews"];
+    if (!views.is_array()) views = json::array();
+    const std::size_t view_count = views.size();
+    std::vector<std::size_t> strides;
+    for (json& view : views) {
+        strides.push_back(view.value("byteStride", std::size_t(0)));
+        view.erase("byteStride");
+    }
+    views.push_back({{"buffer", 0}, {"byteLength", 0}});
+    if (root.contains("accessors"))
+        for (json& accessor : root["accessors"])
+            if (!accessor.contains("bufferView")) accessor["bufferView"] = view_count;
+
+    tinygltf::TinyGLTF parser;
+    auto files = no_files();
+    add_size_callback(files);
+    parser.SetFsCallbacks(files);
+    tinygltf::Model model;
+    std::string error, warning;
+    const std::string text = root.dump();
+    if (!parser.LoadASCIIFromString(&model, &error, &warning, text.c_str(), unsigned(text.size()),
+                                    ""))
+        throw Error(Failure::input, file, "tinygltf refuses it: " + printable(error));
+
+    model.bufferViews.pop_back();
+    for (std::size_t i = 0; i < view_count; ++i) model.bufferViews[i].byteStride = strides[i];
+    for (tinygltf::Accessor& accessor : model.accessors)
+        if (accessor.bufferView == int(view_count)) accessor.bufferView = -1;
+    return model;
+}
+
+}  // namespace
+
+Document open_document(const std::filesystem::path& file, Losses& losses) {
+    Document document;
+    document.file = file.string();
+    document.folder = file.parent_path();
+    document.storage.push_back(read_bytes(file));
+    const Container parts = split_container(document.storage.front(), document.file, losses);
+
+    json root = parse_json(parts.json, document.file, losses);
+    check_asset(root, document.file, losses);
+    check_schema(root, document.file, losses);
+    check_layout(root, document.file);
+    load_buffers(document, root, parts.bin);
+    list_images(document, root);
+    // The text of a .gltf is no longer needed; a .glb's chunk is.
+    if (parts.bin.empty()) document.storage.front() = {};
+    document.model = parse_model(std::move(root), document.file);
+    return document;
+}
+
+std::vector<std::byte> image_bytes(const Document& document, const ImageSource& image,
+                                   const std::string& place) {
+    if (image.view < 0) return fetch(image.uri, document.folder, place);
+    const tinygltf::BufferView& view = document.model.bufferViews[std::size_t(image.view)];
+    const Bytes buffer = document.buffers[std::size_t(view.buffer)];
+    if (buffer.empty()) throw Error(Failure::input, place, "its buffer has no content");
+    const Bytes slice = buffer.subspan(view.byteOffset, view.byteLength);
+    return {slice.begin(), slice.end()};
+}
+
+}  // namespace penumbra::gltf

@@ -1,0 +1,153 @@
+// Checked JSON -> JSON whose accessors lie within their buffers and whose nodes form trees.
+#include "gltf.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace penumbra::gltf {
+namespace {
+
+using nlohmann::json;
+
+std::uint64_t size_at(const json& object, const char* key, std::uint64_t fallback = 0) {
+    return object.value(key, fallback);
+}
+
+std::uint64_t component_size(std::uint64_t type) {
+    switch (type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+    case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
+    default: return 0;
+    }
+}
+
+// glTF 2.0, section 3.6.2.4: each column of a matrix starts at a multiple of four bytes.
+std::uint64_t element_size(const std::string& type, std::uint64_t component) {
+    if (type == "SCALAR") return component;
+    const std::uint64_t n = std::uint64_t(type.back() - '0');
+    if (type[0] == 'V') return n * component;
+    const std::uint64_t column = (n * component + 3) / 4 * 4;
+    return column * (n - 1) + n * component;
+}
+
+struct Layout {
+    const json& root;
+    const std::string& file;
+
+    [[noreturn]] void fail(const std::string& pointer, const std::string& problem) const {
+        throw Error(Failure::input, file + '#' + pointer, problem);
+    }
+
+    void views() const {
+        for (std::size_t i = 0; root.contains("bufferViews") && i < root["bufferViews"].size();
+             ++i) {
+            const json& view = root["bufferViews"][i];
+            const std::uint64_t end = size_at(view, "byteOffset") + size_at(view, "byteLength");
+            const std::uint64_t buffer = size_at(view, "buffer");
+            const std::uint64_t has = size_at(root["buffers"][buffer], "byteLength");
+            if (end > has)
+                fail(fmt::format("/bufferViews/{}", i),
+                     fmt::format("ends at byte {} of buffer {}, which has {}", end, buffer, has));
+        }
+    }
+
+    // `count` elements of `element` bytes from `offset` on; `what` begins the message.
+    void fits(const std::string& pointer, const json& slice, std::uint64_t count,
+              std::uint64_t element) const {
+        const std::uint64_t index = size_at(slice, "bufferView");
+        const json& view = root["bufferViews"][index];
+        const std::uint64_t stride = size_at(view, "byteStride", element);
+        if (stride < element)
+            fail(pointer, fmt::format("has elements of {} bytes, more than the byteStride {} of "
+                                      "buffer view {}",
+                                      element, stride, index));
+        const std::uint64_t end = size_at(slice, "byteOffset") + (count - 1) * stride + element;
+        if (end > size_at(view, "byteLength"))
+            fail(pointer, fmt::format("ends at byte {} of buffer view {}, which has {}", end, index,
+                                      size_at(view, "byteLength")));
+    }
+
+    void accessors() const;
+    void trees() const;
+};
+
+// An accessor without a buffer view is all zeros, which costs its author no bytes.
+constexpr std::uint64_t max_implicit_count = std::uint64_t(1) << 24;
+
+void Layout::accessors() const {
+    for (std::size_t i = 0; root.contains("accessors") && i < root["accessors"].size(); ++i) {
+        const json& accessor = root["accessors"][i];
+        const std::string at = fmt::format("/accessors/{}", i);
+        const std::uint64_t component = component_size(size_at(accessor, "componentType"));
+        if (component == 0)
+            fail(at + "/componentType", fmt::format("is {}, which glTF does not have",
+                                                    size_at(accessor, "componentType")));
+        const std::uint64_t element = element_size(accessor["type"].get<std::string>(), component);
+        const std::uint64_t count = size_at(accessor, "count");
+        if (accessor.contains("bufferView"))
+            fits(at, accessor, count, element);
+        else if (count > max_implicit_count)
+            fail(at, fmt::format("has {} elements and no buffer view", count));
+        if (!accessor.contains("sparse")) continue;
+
+        const json& sparse = accessor["sparse"];
+        const std::uint64_t changed = size_at(sparse, "count");
+        if (changed > count)
+            fail(at + "/sparse", fmt::format("has {} values for {} elements", changed, count));
+        const std::uint64_t type = size_at(sparse["indices"], "componentType");
+        if (component_size(type) == 0 || type % 2 == 0)
+            fail(at + "/sparse/indices/componentType",
+                 fmt::format("is {}, which is no unsigned integer", type));
+        fits(at + "/sparse/indices", sparse["indices"], changed, component_size(type));
+        fits(at + "/sparse/values", sparse["values"], changed, element);
+    }
+}
+
+// glTF 2.0, section 3.5.2: each node has at most one parent, and no node is its own ancestor.
+void Layout::trees() const {
+    if (!root.contains("nodes")) return;
+    const json& nodes = root["nodes"];
+    std::vector<std::size_t> parent(nodes.size(), nodes.size());
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (!nodes[i].contains("children")) continue;
+        for (const json& child : nodes[i]["children"]) {
+            const std::size_t c = child.get<std::size_t>();
+            if (parent[c] != nodes.size())
+                fail(fmt::format("/nodes/{}", c),
+                     fmt::format("is a child of node {} and of node {}", parent[c], i));
+            parent[c] = i;
+        }
+    }
+    // What cannot be reached from a node without a parent is part of a cycle.
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        if (parent[i] == nodes.size()) open.push_back(i);
+    std::vector<bool> reached(nodes.size(), false);
+    while (!open.empty()) {
+        const std::size_t i = open.back();
+        open.pop_back();
+        reached[i] = true;
+        if (!nodes[i].contains("children")) continue;
+        for (const json& child : nodes[i]["children"]) open.push_back(child.get<std::size_t>());
+    }
+    const auto lost = std::find(reached.begin(), reached.end(), false);
+    if (lost != reached.end())
+        fail(fmt::format("/nodes/{}", lost - reached.begin()), "is its own ancestor");
+}
+
+}  // namespace
+
+void check_layout(const json& root, const std::string& file) {
+    const Layout layout{root, file};
+    layout.views();
+    layout.accessors();
+    layout.trees();
+}
+
+}  // namespace penumbra::gltf

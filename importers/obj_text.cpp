@@ -1,0 +1,272 @@
+#include "obj.h"
+
+#include "penumbra/image.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace penumbra::obj {
+
+namespace {
+
+// What tells statements that are left out apart; words as in "Wavefront Advanced Visualizer 4.0,
+// appendix B1: Object Files".
+struct LeftOut {
+    std::string_view keyword = {};
+    std::string_view what = {};
+};
+
+constexpr std::string_view free_form = "free-form curves and surfaces are ignored";
+constexpr std::string_view display = "display attributes (bevel, lod, ...) are ignored";
+constexpr auto left_out = std::to_array<LeftOut>({
+    {"p", "points (p) are ignored"},
+    {"l", "lines (l) are ignored"},
+    {"curv", free_form},
+    {"curv2", free_form},
+    {"surf", free_form},
+    {"bzp", free_form},
+    {"bsp", free_form},
+    {"cdc", free_form},
+    {"cdp", free_form},
+    {"res", free_form},
+    {"bevel", display},
+    {"c_interp", display},
+    {"d_interp", display},
+    {"lod", display},
+    {"ctech", display},
+    {"stech", display},
+    {"shadow_obj", "shadow objects (shadow_obj) are ignored"},
+    {"trace_obj", "ray tracing objects (trace_obj) are ignored"},
+    {"maplib", "texture map libraries (maplib) are ignored"},
+    {"usemap", "texture maps outside of materials (usemap) are ignored"},
+    {"call", "'call' is not followed"},
+    {"csh", "'csh' is not run"},
+});
+
+// Say nothing without the element that they describe, which is counted.
+constexpr auto of_free_form =
+    std::to_array<std::string_view>({"vp", "deg", "bmat", "step", "cstype", "parm", "trim", "hole",
+                                     "scrv", "sp", "end", "con", "mg"});
+
+struct Cleaner {
+    const std::string& file;
+    Tally& tally;
+    Text result = {};
+    Index line = 0;
+    std::size_t vertices = 0;
+    Index group = 0;       // of smoothing
+    Index first_bare = 0;  // line of the first v without a colour
+    float brightest = 0;
+    std::string mended = {};
+
+    [[noreturn]] void fail(const std::string& problem) const {
+        throw Error(Failure::input, place_of(file, line), problem);
+    }
+
+    void keep(std::string_view text) { result.text += text; }
+
+    // "3.1+e2", seen in the wild, means 3.1e+2. Returns whether there was something to mend.
+    bool mend(std::string_view& rest) {
+        std::string words(rest);
+        for (std::size_t at = 1; at + 1 < words.size(); ++at)
+            if ((words[at] == '+' || words[at] == '-') && words[at + 1] == 'e')
+                std::swap(words[at], words[at + 1]);
+        if (words == rest) return false;
+        tally.add("a sign before the e of an exponent is taken as the exponent's", line);
+        mended = std::move(words);
+        rest = mended;
+        return true;
+    }
+
+    // Checks the numbers of a v, vt or vn line; returns how many there are.
+    std::size_t numbers(std::string_view keyword, std::string_view& rest, std::size_t least) {
+        std::size_t count = 0;
+        std::string_view ahead = rest;
+        for (auto word = next_word(ahead); !word.empty(); word = next_word(ahead), ++count) {
+            const Word kind = kind_of(word);
+            if (kind == Word::not_finite)
+                fail(fmt::format("{} has the number '{}', which is not finite", keyword,
+                                 printable(word)));
+            if (kind == Word::number) continue;
+            if (mend(rest)) return numbers(keyword, rest, least);
+            fail(fmt::format("{} has '{}' where a number should be", keyword, printable(word)));
+        }
+        if (count < least)
+            fail(fmt::format("{} needs {} numbers but has {}", keyword, least, count));
+        return count;
+    }
+
+    void vertex(std::string_view rest) {
+        const std::size_t count = numbers("v", rest, 3);
+        ++vertices;
+        if (count >= 6)
+            color(rest);
+        else if (first_bare == 0)
+            first_bare = line;
+        if (count == 4) weight(rest);
+        if (count == 5 || count > 6) tally.add("numbers at the end of a v line are ignored", line);
+        (result.text += "v ") += rest;
+    }
+
+    static float number(std::string_view& rest) {
+        std::string_view word = next_word(rest);
+        if (word.starts_with('+')) word.remove_prefix(1);
+        float value = 0;
+        std::from_chars(word.data(), word.data() + word.size(), value);
+        return value;
+    }
+
+    void color(std::string_view rest) {
+        for (int skip = 0; skip < 3; ++skip) next_word(rest);
+        Color color(0);
+        for (int i = 0; i < 3; ++i) {
+            color[i] = std::max(number(rest), 0.0F);
+            brightest = std::max(brightest, color[i]);
+        }
+        result.colors.push_back(color);
+    }
+
+    void weight(std::string_view rest) {
+        for (int skip = 0; skip < 3; ++skip) next_word(rest);
+        if (number(rest) != 1)
+            tally.add("the weight w of a vertex is ignored: facets have none", line);
+    }
+
+    // A normal that is no number is a common export fault; it becomes zero, which the facet's
+    // replaces later.
+    void normal(std::string_view rest) {
+        std::string_view words = rest;
+        for (auto word = next_word(words); !word.empty(); word = next_word(words)) {
+            if (kind_of(word) != Word::not_finite) continue;
+            keep("vn 0 0 0");
+            return;
+        }
+        numbers("vn", rest, 3);
+        (result.text += "vn ") += rest;
+    }
+
+    void texcoord(std::string_view rest) {
+        numbers("vt", rest, 1);
+        (result.text += "vt ") += rest;
+    }
+
+    // "7", "7/1", "7//3", "7/1/3", and "7/", "7//", "7/1/", which lose the slashes at their end.
+    std::string_view corner(std::string_view word) const {
+        std::string_view kept = word;
+        while (kept.ends_with('/')) kept.remove_suffix(1);
+        const char* at = kept.data();
+        const char* const end = at + kept.size();
+        for (int part = 0; part < 3; ++part) {
+            const bool omitted = part == 1 && at < end && *at == '/';
+            if (!omitted) {
+                if (at < end && *at == '+') ++at;
+                long value = 0;
+                const auto [next, error] = std::from_chars(at, end, value);
+                if (error == std::errc::result_out_of_range || std::abs(value) > 0x7fffffff)
+                    fail(fmt::format("index '{}' is out of range", printable(word)));
+                if (error != std::errc{} || (next != end && *next != '/')) break;
+                if (value == 0)
+                    fail(fmt::format("'{}' has the index 0; the first is 1", printable(word)));
+                at = next;
+            }
+            if (at == end) return kept;
+            ++at;
+        }
+        fail(fmt::format("'{}' is not a vertex of the form v, v/vt, v//vn or v/vt/vn",
+                         printable(word)));
+    }
+
+    void face(std::string_view rest) {
+        const std::size_t begin = result.text.size();
+        keep("f");
+        std::size_t count = 0;
+        for (auto word = next_word(rest); !word.empty(); word = next_word(rest), ++count)
+            (result.text += ' ') += corner(word);
+        if (count < 3) {
+            tally.add("a face with fewer than three corners is ignored", line);
+            result.text.resize(begin);
+            return;
+        }
+        result.face_lines.push_back(line);
+    }
+
+    void smoothing(std::string_view rest) {
+        const std::string_view word = next_word(rest);
+        Index value = 0;
+        const auto [next, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        const bool is_number = error == std::errc{} && next == word.data() + word.size();
+        if (!is_number && word == "on")
+            value = 1;
+        else if (!is_number && word != "off")
+            tally.add(
+                fmt::format("smoothing group '{}' is not a number; taken as off", printable(word)),
+                line);
+        if (value != group) result.smoothing.emplace_back(result.face_lines.size(), group = value);
+    }
+
+    void name(std::string_view keyword, std::string_view rest) {
+        ((result.text += keyword) += ' ') += name_without_comment(rest);
+    }
+
+    void other(std::string_view keyword) {
+        for (const LeftOut& entry : left_out)
+            if (keyword == entry.keyword) return tally.add(std::string(entry.what), line);
+        if (std::ranges::find(of_free_form, keyword) != of_free_form.end()) return;
+        tally.add(fmt::format("unknown keyword '{}' is ignored", printable(keyword)), line);
+    }
+
+    void statement(std::string_view text) {
+        const std::string_view keyword = next_word(text);
+        if (keyword.empty() || keyword.front() == '#') return;
+        const std::string_view plain = without_comment(text);
+        if (keyword == "v") return vertex(plain);
+        if (keyword == "f" || keyword == "fo") return face(plain);
+        if (keyword == "vt") return texcoord(plain);
+        if (keyword == "vn") return normal(plain);
+        if (keyword == "s") return smoothing(plain);
+        if (keyword == "usemtl") result.usemtl_lines.push_back(line);
+        if (keyword == "g" || keyword == "o" || keyword == "usemtl") return name(keyword, text);
+        if (keyword == "mtllib") return result.libraries.push_back({std::string(trim(text)), line});
+        other(keyword);
+    }
+
+    void finish_colors() {
+        auto& colors = result.colors;
+        if (colors.empty()) return;
+        if (colors.size() < vertices) {
+            tally.add(fmt::format("vertex colours are ignored: only {} of {} vertices have one",
+                                  colors.size(), vertices),
+                      first_bare);
+            colors.clear();
+            return;
+        }
+        if (brightest > 1) tally.add("vertex colours exceed 1; they are taken as 0 to 255", 0);
+        const float scale = brightest > 1 ? 1.0F / 255 : 1.0F;
+        // The format does not say in what space they are. Programs store what they display: sRGB.
+        // Blender, for one, encodes them on export and decodes them on import.
+        for (Color& color : colors)
+            for (int i = 0; i < 3; ++i) color[i] = srgb_to_linear(std::min(color[i] * scale, 1.0F));
+    }
+};
+
+}  // namespace
+
+Text clean_obj(std::string bytes, const std::string& file, Tally& tally) {
+    const std::string text = join_lines(to_utf8(std::move(bytes)));
+    Cleaner cleaner = {.file = file, .tally = tally};
+    cleaner.result.text.reserve(text.size() + 1);
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        ++cleaner.line;
+        cleaner.statement(std::string_view(text).substr(at, end - at));
+        cleaner.keep("\n");
+        at = end + 1;
+    }
+    cleaner.finish_colors();
+    return std::move(cleaner.result);
+}
+
+}  // namespace penumbra::obj

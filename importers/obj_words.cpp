@@ -1,0 +1,105 @@
+#include "obj.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace penumbra::obj {
+
+namespace {
+
+constexpr std::string_view blanks = " \t\v\f";
+
+constexpr bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\f' && c != '\n'); }
+
+constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+}  // namespace
+
+std::string place_of(const std::string& file, Index line) {
+    return line ? fmt::format("{}:{}", file, line) : file;
+}
+
+void Tally::add(const std::string& what, Index line) {
+    const auto [found, fresh] = by_what.try_emplace(what, entries.size());
+    if (fresh) entries.push_back({what, line, 0});
+    ++entries[found->second].count;
+}
+
+void Tally::append_to(Losses& losses) const {
+    for (const Entry& entry : entries)
+        losses.push_back(
+            {place_of(file, entry.line),
+             entry.count > 1 ? fmt::format("{} ({} times)", entry.what, entry.count) : entry.what});
+}
+
+std::string_view trim(std::string_view text) {
+    const std::size_t first = text.find_first_not_of(blanks);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::string_view next_word(std::string_view& text) {
+    std::size_t first = 0;
+    while (first < text.size() && is_blank(text[first])) ++first;
+    std::size_t end = first;
+    while (end < text.size() && !is_blank(text[end])) ++end;
+    const std::string_view word = text.substr(first, end - first);
+    text.remove_prefix(end);
+    return word;
+}
+
+std::string_view without_comment(std::string_view text) {
+    std::size_t at = text.find('#');
+    while (at < text.size() && at > 0 && text[at - 1] == '.') at = text.find('#', at + 1);
+    return text.substr(0, at);
+}
+
+std::string_view name_without_comment(std::string_view text) {
+    for (std::size_t at = text.find('#'); at < text.size(); at = text.find('#', at + 1)) {
+        const auto blank = [&](std::size_t i) { return i >= text.size() || is_blank(text[i]); };
+        if (at > 0 && blank(at - 1) && blank(at + 1)) return trim(text.substr(0, at));
+    }
+    return trim(text);
+}
+
+// [+-] (digits [. digits*] | . digits) [eE [+-] digits]; or a word that C libraries print for a
+// value that is no number: nan, -nan(ind), inf, infinity, 1.#IND, -1.#QNAN.
+Word kind_of(std::string_view word) {
+    std::size_t at = 0;
+    const auto peek = [&] { return at < word.size() ? word[at] : '\0'; };
+    const auto digits = [&] {
+        const std::size_t begin = at;
+        while (is_digit(peek())) ++at;
+        return at - begin;
+    };
+    if (peek() == '+' || peek() == '-') ++at;
+    const std::string_view unsigned_word = word.substr(at);
+    std::size_t mantissa = digits();
+    if (peek() == '.') {
+        ++at;
+        mantissa += digits();
+    }
+    bool fits = true;
+    if (mantissa > 0 && (peek() == 'e' || peek() == 'E')) {
+        ++at;
+        if (peek() == '+' || peek() == '-') ++at;
+        const std::size_t count = digits();
+        if (count == 0) return Word::other;
+        fits = count < 9;  // tinyobjloader reads more as zero
+    }
+    if (mantissa > 0 && at == word.size()) return fits ? Word::number : Word::not_finite;
+    const std::string folded = lower_case(unsigned_word.substr(0, 4));
+    const bool not_finite =
+        folded.starts_with("nan") || folded.starts_with("inf") || folded.starts_with("1.#");
+    return not_finite ? Word::not_finite : Word::other;
+}
+
+std::string lower_case(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+    return result;
+}
+
+}  // namespace penumbra::obj

@@ -1,0 +1,368 @@
+#include "arguments.h"
+
+#include "values.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <memory>
+
+namespace penumbra::cli {
+namespace {
+
+constexpr double infinity = HUGE_VAL;
+constexpr Range any = {-infinity, infinity};
+constexpr Range not_negative = {0, infinity};
+
+struct Description {
+    Command command;
+    const char* name;
+    const char* what;
+    const char* example;
+};
+
+constexpr Description descriptions[] = {
+    {Command::render, "render", "Render a scene with the native ray tracer",
+     "  penumbra render chair.glb -o chair.png --size 1280x720 --samples 3"},
+    {Command::export_scene, "export", "Write the equivalent POV-Ray 3.7 scene",
+     "  penumbra export chair.glb -o chair.pov && povray chair.ini"},
+    {Command::validate, "validate",
+     "Render with both renderers, compare the pictures and write a report",
+     "  penumbra validate chair.glb --sidecar studio.toml --report chair-report\n"
+     "  penumbra validate --each --jobs 2 scenes/*.toml --report all"},
+    {Command::compare, "compare", "Measure how alike two pictures are",
+     "  penumbra compare ours.exr theirs.png --report difference --profile similar"},
+    {Command::info, "info", "Say what a scene holds and what of it can be reproduced",
+     "  penumbra info chair.glb --json"},
+};
+
+// As CLI11's, but without "..." behind every type.
+struct HelpFormat : CLI::Formatter {
+    std::string make_option_opts(const CLI::Option* option) const override {
+        const std::string type = option->get_type_name();
+        return type.empty() || option->get_positional() ? "" : " " + type;
+    }
+};
+
+// One subcommand with the options that were declared for it. Values are applied in the order of the
+// command line, for a later setting overrides an earlier one.
+class Reader {
+  public:
+    using Apply = std::function<void(const std::string&)>;
+
+    Reader(CLI::App& program, const Description& description, Arguments& result)
+        : app(program.add_subcommand(description.name, description.what)), arguments(result) {
+        arguments.command = description.command;
+        app->set_help_flag("-h,--help", "Print this help and exit");
+        app->footer(std::string("Example:\n") + description.example);
+        declare();
+    }
+
+    bool chosen() const { return app->parsed(); }
+
+    void apply() {
+        std::map<const CLI::Option*, std::size_t> seen;
+        for (const CLI::Option* option : app->parse_order()) {
+            const auto found = appliers.find(option);
+            if (found == appliers.end()) continue;
+            found->second(option->results().at(seen[option]++));
+        }
+    }
+
+    std::vector<std::string> option_names() const {
+        std::vector<std::string> names;
+        for (const CLI::Option* option : app->get_options())
+            for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+        return names;
+    }
+
+  private:
+    CLI::App* app;
+    Arguments& arguments;
+    std::string group;
+    std::map<const CLI::Option*, Apply> appliers;
+    std::vector<std::unique_ptr<std::vector<std::string>>> values;
+
+    void value(const std::string& name, const std::string& type, const std::string& what,
+               Apply apply) {
+        values.push_back(std::make_unique<std::vector<std::string>>());
+        CLI::Option* const option = app->add_option(name, *values.back(), what);
+        option->allow_extra_args(false)->type_name(type)->group(group);
+        appliers[option] = std::move(apply);
+    }
+
+    void flag(const std::string& name, bool& target, const std::string& what) {
+        app->add_flag(name, target, what)->group(group);
+    }
+
+    // An option that stands for a sidecar key.
+    void setting(const std::string& name, const std::string& type, const std::string& what,
+                 const std::function<std::string(const std::string&)>& to_setting) {
+        value(name, type, what, [this, name, to_setting](const std::string& text) {
+            const std::string made = to_setting(text);
+            arguments.load.settings.push_back(made);
+            arguments.origins[made] = shell_command({name, text});
+        });
+    }
+
+    void limit(const std::string& name, const std::string& metric, const std::string& what) {
+        value(name, "X", what, [this, name, metric](const std::string& text) {
+            overrides[metric] = read_number(name, text, {0, 1});
+        });
+    }
+
+    void declare() {
+        const Command command = arguments.command;
+        declare_inputs();
+        if (command != Command::compare) declare_scene();
+        if (command == Command::validate) declare_povray();
+        if (command == Command::validate || command == Command::compare) declare_limits();
+        declare_console();
+    }
+
+    void declare_inputs() {
+        const bool compares = arguments.command == Command::compare;
+        values.push_back(std::make_unique<std::vector<std::string>>());
+        CLI::Option* const inputs = app->add_option(
+            compares ? "PICTURES" : "INPUT", *values.back(),
+            compares ? "The picture to judge and the reference"
+                     : "Models (.gltf, .glb, .obj) and sidecars (.toml) that form one scene");
+        inputs->type_name("");
+        appliers[inputs] = [this](const std::string& text) { arguments.inputs.emplace_back(text); };
+        group = "Output";
+        switch (arguments.command) {
+        case Command::render:
+            output(".png, .exr, .tif, .jpg or .hdr file to write (<first input>.png)");
+            value("--depth", "8|16", "Bits per channel of a .png or .tif (8)",
+                  [this](const std::string& text) { arguments.bits = bits_of(text); });
+            break;
+        case Command::export_scene: output(".pov file to write (<first input>.pov)"); break;
+        case Command::validate:
+        case Command::compare:
+            value("--report", "DIR", "Folder of the report", [this](const std::string& text) {
+                arguments.report = not_empty("--report", text);
+            });
+            break;
+        case Command::info: break;
+        }
+    }
+
+    void output(const std::string& what) {
+        value("-o,--output", "FILE", what,
+              [this](const std::string& text) { arguments.output = not_empty("--output", text); });
+    }
+
+    static std::string not_empty(const std::string& option, const std::string& text) {
+        if (text.empty()) throw Error(Failure::usage, option, "its value is empty");
+        return text;
+    }
+
+    static int bits_of(const std::string& text) {
+        if (text != "8" && text != "16")
+            throw Error(Failure::usage, "--depth", fmt::format("'{}' is not 8 or 16", text));
+        return text == "8" ? 8 : 16;
+    }
+
+    void declare_scene() {
+        group = "Scene";
+        value("--sidecar", "FILE", "Lay this sidecar over the inputs",
+              [this](const std::string& text) {
+                  arguments.load.sidecar = not_empty("--sidecar", text);
+              });
+        setting("--camera", "NAME", "Use the model's camera of this name",
+                [](const std::string& text) { return "camera.name=" + toml_string(text); });
+        setting("--size", "WxH", "Size of the picture in pixels (800x600)",
+                [](const std::string& text) {
+                    const auto size = read_size("--size", text);
+                    return fmt::format("render.size=[{},{}]", size[0], size[1]);
+                });
+        setting("--background", "R,G,B", "Linear colour behind the scene (0,0,0)",
+                [](const std::string& text) {
+                    const Color c = read_color("--background", text);
+                    return fmt::format("render.background=[{:.9},{:.9},{:.9}]", c.x, c.y, c.z);
+                });
+        value("--penumbra", "DELTA", "Extent of every light in scene units; 0 for sharp shadows",
+              [this](const std::string& text) {
+                  arguments.load.penumbra = read_number("--penumbra", text, not_negative);
+              });
+        value("--set", "KEY=VALUE", "Set any sidecar key, such as lighting.ambient=0.1",
+              [this](const std::string& text) { arguments.load.settings.push_back(text); });
+        declare_rendering();
+    }
+
+    void declare_rendering() {
+        group = "Rendering";
+        setting(
+            "--samples", "N", "Samples per pixel: 1, or a grid of N x N and the centre (1)",
+            [](const std::string& text) {
+                return fmt::format("render.samples={}", read_integer("--samples", text, {1, 9}));
+            });
+        setting("--max-depth", "N", "Ray segments along a path (5)", [](const std::string& text) {
+            return fmt::format("render.max_depth={}", read_integer("--max-depth", text, {1, 256}));
+        });
+        setting("--exposure", "EV", "Brighten by 2^EV (0)", [](const std::string& text) {
+            return fmt::format("render.exposure={}", read_number("--exposure", text, {-32, 32}));
+        });
+        value("--threads", "N", "Threads; 0 for all (PENUMBRA_THREADS, else 0)",
+              [this](const std::string& text) {
+                  arguments.threads = read_integer("--threads", text, {0, 1024});
+              });
+    }
+
+    void declare_povray() {
+        group = "POV-Ray";
+        value("--povray", "PATH", "The POV-Ray program (PENUMBRA_POVRAY, else povray)",
+              [this](const std::string& text) {
+                  arguments.povray.binary = not_empty("--povray", text);
+              });
+        value("--timeout", "SECONDS", "Longest time that POV-Ray may take (600)",
+              [this](const std::string& text) {
+                  arguments.povray.timeout =
+                      std::chrono::seconds(read_integer("--timeout", text, {1, 1e9}));
+              });
+        group = "Scenes";
+        flag("--each", arguments.each, "Every INPUT is a scene of its own");
+        value("--jobs", "N", "With --each: scenes at once (1)", [this](const std::string& text) {
+            arguments.jobs = read_integer("--jobs", text, {1, 256});
+        });
+    }
+
+    void declare_limits() {
+        group = "Limits";
+        value("--profile", "NAME", "Set of limits: strict, equivalent or similar",
+              [this](const std::string& text) { profile = text; });
+        limit("--min-parity", "parity", "Least share of equal pixels (0.995)");
+        limit("--min-ssim", "ssim", "Least structural similarity (0.99)");
+        limit("--max-flip", "flip", "Largest mean FLIP error (0.01)");
+        limit("--max-flip-tile", "flip_tile", "Largest FLIP error of a tile (0.045)");
+        if (arguments.command != Command::compare) return;
+        value("--background", "R,G,B", "Linear colour that counts as empty (that of the border)",
+              [this](const std::string& text) {
+                  arguments.background = read_color("--background", text);
+              });
+    }
+
+    void declare_console() {
+        group = "Messages";
+        flag("--json", arguments.json, "Print the result as JSON");
+        if (arguments.command != Command::compare)
+            flag("--strict", arguments.strict, "Fail when something cannot be carried over");
+        flag("-q,--quiet", arguments.quiet, "Print errors and results only");
+        flag("-v,--verbose", arguments.verbose, "Print every warning and what is being done");
+        flag("--color", color, "Colour messages even where no terminal is");
+        flag("--no-color", no_color, "Do not colour messages (NO_COLOR)");
+    }
+
+    bool color = false, no_color = false;
+    std::string profile;
+    std::map<std::string, double> overrides;
+
+  public:
+    // What depends on several options.
+    void finish() {
+        if (color || no_color) arguments.color = !no_color;
+        const bool compares = arguments.command == Command::compare;
+        if (!profile.empty())
+            arguments.limits = profile_limits(profile);
+        else if (compares)
+            arguments.limits = profile_limits("equivalent");
+        for (const auto& [metric, value] : overrides) arguments.limits.limits[metric] = value;
+        if (compares && arguments.inputs.size() != 2)
+            throw Error(Failure::usage, "",
+                        fmt::format("compare takes two pictures, not {}", arguments.inputs.size()));
+        if (arguments.inputs.empty() && (arguments.each || !arguments.load.sidecar))
+            throw Error(
+                Failure::usage, "",
+                fmt::format("no input is given (see 'penumbra {} --help')", app->get_name()));
+        if (arguments.jobs > 1 && !arguments.each)
+            throw Error(Failure::usage, "--jobs", "needs --each");
+    }
+};
+
+int threads_of_environment() {
+    const char* const text = std::getenv("PENUMBRA_THREADS");
+    return text == nullptr || *text == 0 ? 0 : read_integer("PENUMBRA_THREADS", text, {0, 1024});
+}
+
+std::string without_double_gaps(std::string text) {
+    for (auto at = text.find("\n\n\n"); at != std::string::npos; at = text.find("\n\n\n", at))
+        text.erase(at, 1);
+    return text;
+}
+
+// CLI11's own findings as one clear sentence.
+[[noreturn]] void refuse(const CLI::App& program, const CLI::ParseError& error,
+                         const std::vector<std::string>& options) {
+    const auto chosen = program.get_subcommands();
+    const std::string see = fmt::format(" (see 'penumbra {}--help')",
+                                        chosen.empty() ? "" : chosen[0]->get_name() + " ");
+    const auto left = program.remaining(true);
+    if (chosen.empty()) {
+        std::vector<std::string> names;
+        for (const Description& description : descriptions) names.emplace_back(description.name);
+        if (left.empty()) throw Error(Failure::usage, "", "no command is given" + see);
+        const char* const kind = left[0].starts_with('-') ? "option" : "command";
+        throw Error(
+            Failure::usage, "",
+            fmt::format("unknown {} '{}'{}{}", kind, left[0], did_you_mean(left[0], names), see));
+    }
+    if (!left.empty()) {
+        const std::string name = left[0].substr(0, left[0].find('='));
+        throw Error(Failure::usage, "",
+                    fmt::format("unknown option '{}'{}{}", name, did_you_mean(name, options), see));
+    }
+    std::string text = error.what();
+    text = text.substr(0, text.find('\n'));
+    throw Error(Failure::usage, "", text + see);
+}
+
+}  // namespace
+
+Parsed parse(int argc, const char* const* argv) {
+    CLI::App program(
+        "Renders glTF and OBJ models, exports them to POV-Ray and proves both pictures "
+        "equal.",
+        "penumbra");
+    program.formatter(std::make_shared<HelpFormat>());
+    program.set_help_flag("-h,--help", "Print this help and exit");
+    program.set_version_flag("--version", "penumbra " PENUMBRA_VERSION,
+                             "Print the version and exit");
+    program.footer("Example:\n  penumbra render chair.glb -o chair.png\n\n"
+                   "'penumbra COMMAND --help' lists the options of a command.");
+    program.require_subcommand(1);
+
+    std::array<Arguments, std::size(descriptions)> results;
+    std::vector<std::unique_ptr<Reader>> readers;
+    for (std::size_t i = 0; i < results.size(); ++i)
+        readers.push_back(std::make_unique<Reader>(program, descriptions[i], results[i]));
+    const auto chosen = [&] {
+        return std::find_if(readers.begin(), readers.end(),
+                            [](const auto& reader) { return reader->chosen(); });
+    };
+    try {
+        program.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        return {{}, without_double_gaps(program.help())};
+    } catch (const CLI::CallForVersion& version) {
+        return {{}, std::string(version.what()) + "\n"};
+    } catch (const CLI::ParseError& error) {
+        const auto reader = chosen();
+        refuse(program, error,
+               reader == readers.end() ? std::vector<std::string>{} : (*reader)->option_names());
+    }
+
+    const auto reader = chosen();
+    Arguments& arguments = results[std::size_t(reader - readers.begin())];
+    arguments.threads = threads_of_environment();
+    (*reader)->apply();
+    (*reader)->finish();
+    std::vector<std::string> words = {"penumbra"};
+    words.insert(words.end(), argv + 1, argv + argc);
+    arguments.line = shell_command(words);
+    return {std::move(arguments), ""};
+}
+
+}  // namespace penumbra::cli

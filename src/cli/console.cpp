@@ -1,0 +1,178 @@
+#include "console.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <unordered_map>
+
+namespace penumbra::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* red = "\033[1;31m";
+constexpr const char* yellow = "\033[1;33m";
+constexpr const char* faint = "\033[2m";
+constexpr const char* normal = "\033[0m";
+constexpr const char* erase_line = "\r\033[K";
+
+// What files say must not move the cursor.
+std::string one_line(std::string text) {
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+    return text;
+}
+
+bool environment_wants_color() {
+    const char* const no_color = std::getenv("NO_COLOR");
+    const char* const term = std::getenv("TERM");
+    return (no_color == nullptr || *no_color == 0) && term != nullptr &&
+           std::string_view(term) != "dumb";
+}
+
+int columns() {
+    winsize size{};
+    return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+std::string duration(double seconds) {
+    const auto whole = long(std::ceil(seconds));
+    if (whole >= 3600)
+        return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+    return fmt::format("{}:{:02}", whole / 60, whole % 60);
+}
+
+std::string rate(double per_second, const std::string& unit) {
+    if (per_second >= 1e6) return fmt::format("{:.1f} M{}/s", per_second / 1e6, unit);
+    if (per_second >= 1e3) return fmt::format("{:.0f} k{}/s", per_second / 1e3, unit);
+    return fmt::format("{:.1f} {}/s", per_second, unit);
+}
+
+template <class Key>
+std::vector<LossGroup> grouped(const Losses& losses, const Key& key) {
+    std::vector<LossGroup> groups;
+    std::unordered_map<std::string, std::size_t> known;
+    for (const Loss& loss : losses) {
+        const auto [entry, fresh] = known.emplace(key(loss), groups.size());
+        if (fresh)
+            groups.push_back({loss, 1});
+        else
+            ++groups[entry->second].count;
+    }
+    return groups;
+}
+
+}  // namespace
+
+std::vector<LossGroup> equal_losses(const Losses& losses) {
+    return grouped(losses, [](const Loss& loss) { return loss.place + '\n' + loss.what; });
+}
+
+std::vector<LossGroup> similar_losses(const Losses& losses) {
+    return grouped(losses, [](const Loss& loss) { return loss.what; });
+}
+
+struct Console::Bar {
+    std::string work, unit;
+    double units = 0;
+    Clock::time_point start = Clock::now(), drawn = {};
+};
+
+Console::Console(const ConsoleOptions& chosen)
+    : options(chosen), terminal(isatty(STDERR_FILENO) == 1),
+      colored(chosen.color.value_or(terminal && environment_wants_color())) {}
+
+void Console::error(const std::string& text) { line(red, "error: ", text); }
+
+void Console::internal_error(const std::string& text) { line(red, "internal error: ", text); }
+
+void Console::warning(const std::string& text) {
+    if (!options.quiet) line(yellow, "warning: ", text);
+}
+
+void Console::detail(const std::string& text) {
+    if (options.verbose && !options.quiet) line(faint, "", text);
+}
+
+void Console::losses(const Losses& list) {
+    if (options.verbose) {
+        for (const auto& [loss, count] : equal_losses(list))
+            warning(loss.place + ": " + loss.what +
+                    (count > 1 ? fmt::format(" ({} times)", count) : ""));
+        return;
+    }
+    for (const auto& [loss, count] : similar_losses(list))
+        warning(loss.place + ": " + loss.what +
+                (count > 1 ? fmt::format(" (and {} more)", count - 1) : ""));
+}
+
+void Console::result(const std::string& text) {
+    const std::lock_guard lock(mutex);
+    clear_bar();
+    errno = 0;
+    const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+    if (!written || std::fflush(stdout) != 0)
+        throw Error(Failure::output, "standard output", std::strerror(errno));
+}
+
+void Console::line(const char* color, const char* kind, const std::string& text) {
+    const std::lock_guard lock(mutex);
+    clear_bar();
+    const std::string whole =
+        colored ? fmt::format("{}penumbra: {}{}{}\n", color, kind, normal, one_line(text))
+                : fmt::format("penumbra: {}{}\n", kind, one_line(text));
+    std::fwrite(whole.data(), 1, whole.size(), stderr);
+}
+
+std::function<void(double)> Console::progress(const std::string& work, double units,
+                                              const std::string& unit) {
+    if (!terminal || options.quiet) return {};
+    auto bar = std::make_shared<Bar>();
+    bar->work = work;
+    bar->unit = unit;
+    bar->units = units;
+    return [this, bar](double done) { draw(*bar, done); };
+}
+
+void Console::draw(Bar& bar, double done) {
+    constexpr auto pause = std::chrono::milliseconds(100);
+    const std::lock_guard lock(mutex);
+    const auto now = Clock::now();
+    if (now - bar.drawn < pause) return;
+    bar.drawn = now;
+
+    done = std::clamp(done, 0.0, 1.0);
+    const double elapsed = std::chrono::duration<double>(now - bar.start).count();
+    std::string right = fmt::format(" {:3.0f} %", done * 100);
+    if (bar.units > 0 && elapsed > 0) right += "  " + rate(done * bar.units / elapsed, bar.unit);
+    if (done > 0.01) right += "  " + duration(elapsed * (1 - done) / done) + " left";
+
+    const int free = columns() - int(bar.work.size() + right.size()) - 5;
+    const int width = std::clamp(free, 0, 40);
+    const int filled = int(std::lround(done * width));
+    const std::string text = fmt::format("{}{} [{:#<{}}{:.<{}}]{}", erase_line, bar.work, "",
+                                         filled, "", width - filled, right);
+    std::fwrite(text.data(), 1, text.size(), stderr);
+    std::fflush(stderr);
+    bar_drawn = true;
+}
+
+void Console::clear_progress() {
+    const std::lock_guard lock(mutex);
+    clear_bar();
+}
+
+void Console::clear_bar() {
+    if (bar_drawn) std::fputs(erase_line, stderr);
+    bar_drawn = false;
+}
+
+}  // namespace penumbra::cli

@@ -1,0 +1,85 @@
+#include "report_folder.h"
+
+#include "interruption.h"
+#include "steps.h"
+
+#include "penumbra/error.h"
+#include "penumbra/image.h"
+
+#include <unistd.h>
+
+#include <system_error>
+
+namespace penumbra::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float difference_gain = 100;  // shows what the eye cannot see
+
+// "report/" and "report/." name the same folder as "report".
+fs::path plain(const fs::path& folder) {
+    const fs::path normal = (folder / "").lexically_normal();
+    return normal.has_parent_path() ? normal.parent_path() : normal;
+}
+
+[[noreturn]] void fail(const fs::path& folder, const std::error_code& error) {
+    throw Error(Failure::output, folder.string(), "cannot write the report: " + error.message());
+}
+
+}  // namespace
+
+void check_report(const fs::path& folder) {
+    std::error_code ignored;
+    const fs::path target = plain(folder);
+    if (fs::exists(target, ignored) && !fs::is_directory(target, ignored))
+        throw Error(Failure::output, folder.string(), "is not a folder");
+    if (fs::is_directory(target, ignored))
+        check_writable(target / "index.html");
+    else
+        check_writable(target);
+}
+
+ReportFolder::ReportFolder(const fs::path& final_name) : target(plain(final_name)) {
+    const std::string name = "." + target.filename().string() + "." + std::to_string(::getpid());
+    // In an existing folder, so that "--report ." works wherever "." is.
+    std::error_code error;
+    staging = fs::is_directory(target, error) ? target / (name + ".tmp")
+                                              : target.parent_path() / (name + ".tmp");
+    set_leftover(fs::absolute(staging, error));
+    fs::create_directory(staging, error);
+    if (error) fail(final_name, error);
+}
+
+ReportFolder::~ReportFolder() {
+    std::error_code ignored;
+    fs::remove_all(staging, ignored);
+    set_leftover({});
+}
+
+void ReportFolder::finish() {
+    std::error_code error;
+    if (!fs::exists(target, error)) {
+        fs::rename(staging, target, error);
+        if (error) fail(target, error);
+        return;
+    }
+    for (const fs::directory_entry& entry : fs::directory_iterator(staging)) {
+        const fs::path to = target / entry.path().filename();
+        if (entry.is_directory()) fs::remove_all(to, error);
+        fs::rename(entry.path(), to, error);
+        if (error) fail(target, error);
+    }
+}
+
+void save_maps(const fs::path& folder, const std::string& sub, Case& result) {
+    if (result.comparison.flip_map.pixels.empty()) return;
+    const std::string prefix = sub.empty() ? "" : sub + "/";
+    result.files["difference"] = prefix + "difference.png";
+    result.files["flip"] = prefix + "flip.png";
+    save_image(folder / result.files["difference"],
+               difference(result.test, result.reference, difference_gain));
+    save_image(folder / result.files["flip"], heat_map(result.comparison.flip_map));
+}
+
+}  // namespace penumbra::cli

@@ -1,0 +1,105 @@
+#include "steps.h"
+
+#include "penumbra/tracer.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace penumbra::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A message about a setting that stands for an option names the option.
+std::string in_users_words(const Arguments& arguments, const std::string& message) {
+    for (const auto& [setting, typed] : arguments.origins) {
+        const std::string prefix = "--set " + setting;
+        if (message.starts_with(prefix)) return typed + message.substr(prefix.size());
+    }
+    return message;
+}
+
+}  // namespace
+
+Imported load(const Arguments& arguments, const std::vector<fs::path>& inputs) {
+    try {
+        Imported imported = load_scene(inputs, arguments.load);
+        imported.render.threads = arguments.threads;
+        return imported;
+    } catch (const Error& error) {
+        throw Error(error.failure, "", in_users_words(arguments, error.what()));
+    }
+}
+
+void report_losses(const Context& context, const Losses& losses) {
+    context.console.losses(losses);
+    if (context.arguments.strict && !losses.empty())
+        throw Error(
+            Failure::input, "",
+            fmt::format("{} thing{} cannot be carried over and --strict is given; the first "
+                        "is {}: {}",
+                        losses.size(), losses.size() == 1 ? "" : "s", losses[0].place,
+                        losses[0].what));
+}
+
+void check_writable(const fs::path& file) {
+    std::error_code ignored;
+    if (fs::is_directory(file, ignored))
+        throw Error(Failure::output, file.string(), "cannot write: is a folder");
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    if (!fs::exists(folder, ignored))
+        throw Error(Failure::output, file.string(), "its folder does not exist");
+    if (!fs::is_directory(folder, ignored))
+        throw Error(Failure::output, file.string(),
+                    fmt::format("'{}' is not a folder", folder.string()));
+    if (::access(folder.c_str(), W_OK | X_OK) != 0)
+        throw Error(Failure::output, file.string(),
+                    fmt::format("cannot write in its folder: {}", std::strerror(errno)));
+}
+
+std::string stem_of(const Arguments& arguments) {
+    const fs::path first = arguments.inputs.empty() ? *arguments.load.sidecar : arguments.inputs[0];
+    const std::string stem = first.stem().string();
+    return stem.empty() ? "scene" : stem;
+}
+
+std::string source_of(const Arguments& arguments, const std::vector<fs::path>& inputs) {
+    std::string source;
+    const auto add = [&](const fs::path& file) {
+        source += (source.empty() ? "" : " ") + file.string();
+    };
+    for (const fs::path& file : inputs) add(file);
+    if (arguments.load.sidecar) add(*arguments.load.sidecar);
+    return source;
+}
+
+double sample_count(const RenderOptions& options) {
+    const double grid = options.samples > 1 ? double(options.samples) * options.samples + 1 : 1;
+    return double(options.width) * options.height * grid;
+}
+
+Image render_scene(const Context& context, const NormalisedScene& scene,
+                   const RenderOptions& options, const std::string& name) {
+    const Watch watch = {context.console.progress(name, sample_count(options), " samples"),
+                         context.stop};
+    Image image = render(scene, options, watch);
+    context.console.clear_progress();
+    return image;
+}
+
+nlohmann::ordered_json losses_json(const Losses& losses) {
+    auto list = nlohmann::ordered_json::array();
+    for (const auto& [loss, count] : equal_losses(losses))
+        list.push_back({{"place", loss.place}, {"what", loss.what}, {"count", count}});
+    return list;
+}
+
+std::string json_text(const nlohmann::ordered_json& document) {
+    return document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+}
+
+}  // namespace penumbra::cli

@@ -1,0 +1,52 @@
+// The steps that several commands share.
+#pragma once
+
+#include "commands.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <chrono>
+#include <string>
+
+namespace penumbra::cli {
+
+/// Seconds since it was made.
+class Stopwatch {
+  public:
+    double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+};
+
+/// The scene of `inputs` with all that the command line lays over it. Throws Error.
+Imported load(const Arguments& arguments, const std::vector<std::filesystem::path>& inputs);
+
+/// Warns of what could not be carried over; with --strict throws Error (input) if there is any.
+void report_losses(const Context& context, const Losses& losses);
+
+/// Throws Error (output) when `file` can clearly not be written, before work is spent on it.
+void check_writable(const std::filesystem::path& file);
+
+/// "chair" for "models/chair.glb": the default name of what a command makes of its inputs.
+std::string stem_of(const Arguments& arguments);
+
+/// The inputs as the user named them, for messages: "chair.glb studio.toml".
+std::string source_of(const Arguments& arguments, const std::vector<std::filesystem::path>& inputs);
+
+/// Rendering with the number of threads of the command line, under a progress bar.
+Image render_scene(const Context& context, const NormalisedScene& scene,
+                   const RenderOptions& options, const std::string& name);
+
+/// Samples in a whole picture, for the rate of the progress bar.
+double sample_count(const RenderOptions& options);
+
+/// [{"place", "what", "count"}], equal ones together.
+nlohmann::ordered_json losses_json(const Losses& losses);
+
+/// `document` as text, with what is no UTF-8 replaced.
+std::string json_text(const nlohmann::ordered_json& document);
+
+}  // namespace penumbra::cli

@@ -1,0 +1,145 @@
+#include "values.h"
+
+#include "penumbra/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+namespace penumbra::cli {
+namespace {
+
+constexpr int longest_side = 32767;  // of a picture that POV-Ray renders
+
+[[noreturn]] void refuse(const std::string& option, std::string_view text,
+                         const std::string& wanted) {
+    throw Error(Failure::usage, option, fmt::format("'{}' is not {}", text, wanted));
+}
+
+template <class Number>
+std::optional<Number> number_of(std::string_view text) {
+    Number value{};
+    if (text.starts_with('+')) text.remove_prefix(1);
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size() || text.empty()) return {};
+    return value;
+}
+
+std::string described(const char* kind, Range range) {
+    return std::isinf(range.high) ? fmt::format("{} of {} or more", kind, range.low)
+                                  : fmt::format("{} from {} to {}", kind, range.low, range.high);
+}
+
+// Insertions, deletions and changes that turn `a` into `b` (Levenshtein 1966, "Binary codes capable
+// of correcting deletions, insertions, and reversals").
+std::size_t edits(const std::string& a, const std::string& b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i + 1;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({changed, row[j] + 1, diagonal + 1});
+        }
+    }
+    return row.back();
+}
+
+bool is_plain(const std::string& word) {
+    constexpr std::string_view plain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,=:+@%";
+    return !word.empty() && word.find_first_not_of(plain) == std::string::npos;
+}
+
+}  // namespace
+
+int read_integer(const std::string& option, std::string_view text, Range range) {
+    const auto value = number_of<int>(text);
+    if (!value || *value < range.low || *value > range.high)
+        refuse(option, text, described("a whole number", range));
+    return *value;
+}
+
+double read_number(const std::string& option, std::string_view text, Range range) {
+    const auto value = number_of<double>(text);
+    if (!value || !std::isfinite(*value) || !(*value >= range.low && *value <= range.high))
+        refuse(option, text, described("a number", range));
+    return *value;
+}
+
+std::array<int, 2> read_size(const std::string& option, std::string_view text) {
+    const auto cross = text.find_first_of("xX");
+    const auto width = number_of<int>(text.substr(0, cross));
+    const auto height =
+        cross == std::string_view::npos ? std::nullopt : number_of<int>(text.substr(cross + 1));
+    const auto fits = [](int side) { return side >= 1 && side <= longest_side; };
+    if (!width || !height || !fits(*width) || !fits(*height))
+        refuse(option, text,
+               fmt::format("WIDTHxHEIGHT in pixels from 1 to {}, such as 800x600", longest_side));
+    return {*width, *height};
+}
+
+Color read_color(const std::string& option, const std::string& text) {
+    Color color(0);
+    std::string_view rest = text;
+    for (int i = 0; i < 3; ++i) {
+        const auto comma = i < 2 ? rest.find(',') : rest.size();
+        const auto value = comma == std::string_view::npos
+                               ? std::nullopt
+                               : number_of<float>(rest.substr(0, comma));
+        if (!value || !std::isfinite(*value) || *value < 0)
+            refuse(option, text, "R,G,B in linear numbers of 0 or more, such as 0.1,0.1,0.2");
+        color[i] = *value;
+        if (i < 2) rest.remove_prefix(comma + 1);
+    }
+    return color;
+}
+
+// TOML 1.0, section "String".
+std::string toml_string(const std::string& text) {
+    std::string quoted = "\"";
+    for (const char c : text) {
+        const auto code = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\')
+            quoted += {'\\', c};
+        else if (code < 0x20 || code == 0x7f)
+            quoted += fmt::format("\\u{:04x}", code);
+        else
+            quoted += c;
+    }
+    return quoted + '"';
+}
+
+std::string shell_command(const std::vector<std::string>& words) {
+    std::string line;
+    for (const std::string& word : words) {
+        if (!line.empty()) line += ' ';
+        if (is_plain(word)) {
+            line += word;
+            continue;
+        }
+        line += '\'';
+        for (const char c : word) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
+        line += '\'';
+    }
+    return line;
+}
+
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates) {
+    std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
+    std::string best;
+    for (const std::string& candidate : candidates) {
+        const std::size_t distance = word.size() > 100 ? word.size() : edits(word, candidate);
+        if (distance >= least) continue;
+        least = distance;
+        best = candidate;
+    }
+    return best.empty() ? "" : fmt::format(" (did you mean '{}'?)", best);
+}
+
+}  // namespace penumbra::cli

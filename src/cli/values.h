@@ -1,0 +1,35 @@
+// The text of an option -> its value. `option` is for messages; all throw Error (usage).
+#pragma once
+
+#include "penumbra/math.h"
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace penumbra::cli {
+
+struct Range {
+    double low = 0, high = 0;  ///< inclusive
+};
+
+int read_integer(const std::string& option, std::string_view text, Range range);
+double read_number(const std::string& option, std::string_view text, Range range);
+
+/// "800x600".
+std::array<int, 2> read_size(const std::string& option, std::string_view text);
+
+/// "0.1,0.2,0.3", linear and not negative.
+Color read_color(const std::string& option, const std::string& text);
+
+/// A TOML basic string of `text`, quotes included.
+std::string toml_string(const std::string& text);
+
+/// `words` as a shell command that means them.
+std::string shell_command(const std::vector<std::string>& words);
+
+/// " (did you mean 'X'?)" when one of `candidates` is near `word`, else "".
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates);
+
+}  // namespace penumbra::cli

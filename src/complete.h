@@ -1,0 +1,20 @@
+// What complete() gives a scene, piece by piece.
+#pragma once
+
+#include "penumbra/scene.h"
+
+namespace penumbra {
+
+/// Looks from front-right-above; not framed yet.
+Camera default_camera();
+
+/// The bounds of `scene`; when they are empty or a point, a box of side 2 where something would be:
+/// around that point, standing on the first plane, or around the origin.
+Bounds stage(const Scene& scene);
+
+/// Moves `camera` along and across its direction of view until the corners of `box` fill its
+/// picture but for a margin of 6 % at the nearest edges. An orthographic camera also gets its
+/// extent. Precondition: `box` has a radius above 0.
+void frame(Camera& camera, const Bounds& box, double aspect);
+
+}  // namespace penumbra

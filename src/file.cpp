@@ -1,0 +1,172 @@
+#include "file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <string>
+#include <system_error>
+
+namespace penumbra {
+namespace {
+
+// Closes on every way out.
+struct Descriptor {
+    int number = -1;
+    explicit Descriptor(int opened) : number(opened) {}
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    ~Descriptor() {
+        if (number >= 0) ::close(number);
+    }
+};
+
+// The system's sentence, in lower case as the rest of our messages.
+std::string reason(int error) {
+    std::string text = std::generic_category().message(error);
+    if (text.size() > 1 && text[0] >= 'A' && text[0] <= 'Z' && text[1] >= 'a' && text[1] <= 'z')
+        text[0] = char(text[0] - 'A' + 'a');
+    return text;
+}
+
+[[noreturn]] void fail_input(const std::filesystem::path& file, int error) {
+    throw Error(Failure::input, file.string(), error == ENOENT ? "no such file" : reason(error));
+}
+
+[[noreturn]] void fail_output(const std::filesystem::path& file, int error) {
+    std::error_code ignored;
+    const bool homeless = error == ENOENT && file.has_parent_path() &&
+                          !std::filesystem::exists(file.parent_path(), ignored);
+    throw Error(Failure::output, file.string(),
+                homeless ? "its folder does not exist" : "cannot write: " + reason(error));
+}
+
+// Bytes of Buffer (string or vector) are read straight into place.
+template <class Buffer>
+Buffer read_whole(const std::filesystem::path& file, std::uintmax_t max) {
+    // Without O_NONBLOCK opening a FIFO would wait for its writer.
+    const Descriptor in(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    if (in.number < 0) fail_input(file, errno);
+
+    struct stat status {};
+    if (::fstat(in.number, &status) != 0) fail_input(file, errno);
+    if (S_ISDIR(status.st_mode)) throw Error(Failure::input, file.string(), "is a folder");
+    if (!S_ISREG(status.st_mode))
+        throw Error(Failure::input, file.string(), "is not a regular file");
+    const auto size = std::uintmax_t(status.st_size);
+    if (size > max)
+        throw Error(Failure::input, file.string(),
+                    "has " + std::to_string(size) + " bytes, more than the " + std::to_string(max) +
+                        " that are read");
+
+    Buffer content(std::size_t(size), typename Buffer::value_type{});
+    std::size_t done = 0;
+    while (done < content.size()) {
+        const ssize_t n = ::read(in.number, content.data() + done, content.size() - done);
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) fail_input(file, errno);
+        if (n == 0) break;  // it shrank meanwhile
+        done += std::size_t(n);
+    }
+    content.resize(done);
+    return content;
+}
+
+int write_all(int out, std::span<const std::byte> content) {
+    while (!content.empty()) {
+        const ssize_t n = ::write(out, content.data(), content.size());
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) return errno;
+        content = content.subspan(std::size_t(n));
+    }
+    return ::fsync(out) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
+}
+
+std::string name_beside(const std::filesystem::path& target) {
+    static std::atomic<unsigned> count = 0;
+    return target.string() + "." + std::to_string(::getpid()) + "-" + std::to_string(++count) +
+           ".tmp";
+}
+
+// A file that has no name yet, so that even a killed process leaves nothing; where the file system
+// has no such files, one with a name of its own.
+struct NewFile {
+    std::string name;  // empty: none yet
+    int number = -1;
+
+    explicit NewFile(const std::filesystem::path& target) {
+        const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : ".";
+        if (::access("/proc/self/fd", X_OK) == 0)  // which gives it its name later
+            number = ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+        if (number >= 0) return;
+        do {
+            name = name_beside(target);
+            number = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        } while (number < 0 && errno == EEXIST);
+        if (number < 0) name.clear();
+    }
+    NewFile(const NewFile&) = delete;
+    NewFile& operator=(const NewFile&) = delete;
+    ~NewFile() {
+        if (number >= 0) ::close(number);
+        if (!name.empty()) ::unlink(name.c_str());
+    }
+
+    // Takes the place of `target`; returns the system's error.
+    int rename_to(const std::filesystem::path& target) {
+        const std::string self = "/proc/self/fd/" + std::to_string(number);
+        while (name.empty()) {
+            const std::string beside = name_beside(target);
+            if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, beside.c_str(), AT_SYMLINK_FOLLOW) == 0)
+                name = beside;
+            else if (errno != EEXIST)
+                return errno;
+        }
+        if (::rename(name.c_str(), target.c_str()) != 0) return errno;
+        name.clear();
+        return 0;
+    }
+};
+
+}  // namespace
+
+std::string read_text(const std::filesystem::path& file, std::uintmax_t max) {
+    return read_whole<std::string>(file, max);
+}
+
+std::vector<std::byte> read_bytes(const std::filesystem::path& file, std::uintmax_t max) {
+    return read_whole<std::vector<std::byte>>(file, max);
+}
+
+void write_file(const std::filesystem::path& file, std::span<const std::byte> content) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(file, ignored))
+        throw Error(Failure::output, file.string(), "cannot write: is a folder");
+
+    // Devices and pipes (/dev/stdout) cannot be replaced, only written to.
+    if (std::filesystem::exists(file, ignored) &&
+        !std::filesystem::is_regular_file(file, ignored)) {
+        const Descriptor out(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
+        if (out.number < 0) fail_output(file, errno);
+        if (const int error = write_all(out.number, content)) fail_output(file, error);
+        return;
+    }
+
+    // Through a symbolic link the file it points to is replaced, not the link.
+    const std::filesystem::path target = std::filesystem::is_symlink(file, ignored)
+                                             ? std::filesystem::weakly_canonical(file, ignored)
+                                             : file;
+    NewFile out(target);
+    if (out.number < 0) fail_output(file, errno);
+    int error = write_all(out.number, content);
+    if (error == 0) error = out.rename_to(target);
+    if (error != 0) fail_output(file, error);
+}
+
+void write_file(const std::filesystem::path& file, std::string_view content) {
+    write_file(file, std::as_bytes(std::span(content.data(), content.size())));
+}
+
+}  // namespace penumbra

@@ -1,0 +1,24 @@
+// File structure that must be looked at before a decoder sees the file.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace penumbra {
+
+/// A PNG with only the chunks that its samples depend on. libpng prints to stderr about damaged
+/// chunks and about many harmless colour profiles, and a library should not; so damage is found
+/// here, and profiles, texts and dates are left out.
+struct CheckedPng {
+    std::vector<std::byte> file = {};
+    std::string problem = {};  ///< empty: success
+};
+CheckedPng check_png(std::span<const std::byte> file);
+
+/// A copy of a WebP file that claims to have no alpha, so that its colours are decoded as they are
+/// stored, straight; empty when the file has no alpha. OpenImageIO always multiplies them by it.
+std::vector<std::byte> without_alpha(std::span<const std::byte> webp);
+
+}  // namespace penumbra

@@ -1,0 +1,194 @@
+// Accessors and primitives of glTF.
+#include "gltf_builder.h"
+
+using namespace penumbra;
+using test::Gltf;
+using test::json;
+using test::read;
+
+namespace {
+
+Mesh only_mesh(const Gltf& gltf) {
+    const Imported imported = read(gltf);
+    REQUIRE(imported.scene.meshes.size() == 1);
+    return imported.scene.meshes[0];
+}
+
+// Positions (i, 0, 0), (i, 1, 0) for i = 0, 1, 2: a band of four triangles.
+const std::vector<float> band = {0, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 2, 0, 0, 2, 1, 0};
+
+using Triangles = std::vector<std::array<Index, 3>>;
+
+template <class T>
+Triangles indexed_by() {
+    Gltf gltf;
+    const int positions = gltf.accessor("VEC3", band);
+    const int indices = gltf.accessor("SCALAR", std::vector<T>{5, 4, 3, 0, 1, 2});
+    gltf.show({{"attributes", {{"POSITION", positions}}}, {"indices", indices}});
+    return only_mesh(gltf).triangles;
+}
+
+template <class T>
+std::vector<Vec2f> texcoords_from(const std::vector<T>& values) {
+    Gltf gltf = test::triangle();
+    gltf.root["extensionsUsed"] = {"KHR_mesh_quantization"};
+    gltf.root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
+        gltf.accessor("VEC2", values, {{"normalized", true}});
+    return only_mesh(gltf).texcoords;
+}
+
+}  // namespace
+
+TEST_CASE("glTF meshes, read indices of every type") {
+    const Triangles expected = {{5, 4, 3}, {0, 1, 2}};
+    CHECK(indexed_by<std::uint8_t>() == expected);
+    CHECK(indexed_by<std::uint16_t>() == expected);
+    CHECK(indexed_by<std::uint32_t>() == expected);
+}
+
+TEST_CASE("glTF meshes, turn strips and fans into triangles") {
+    Gltf gltf;
+    const int positions = gltf.accessor("VEC3", band);
+    json& primitive = gltf.show({{"attributes", {{"POSITION", positions}}}, {"mode", 5}});
+    CHECK(only_mesh(gltf).triangles == Triangles{{0, 1, 2}, {1, 3, 2}, {2, 3, 4}, {3, 5, 4}});
+    primitive["mode"] = 6;
+    CHECK(only_mesh(gltf).triangles == Triangles{{1, 2, 0}, {2, 3, 0}, {3, 4, 0}, {4, 5, 0}});
+    primitive["mode"] = 4;
+    CHECK(only_mesh(gltf).triangles == Triangles{{0, 1, 2}, {3, 4, 5}});
+}
+
+TEST_CASE("glTF meshes, count the points and lines that they leave out") {
+    const auto loss = [](int mode) {
+        Gltf gltf;
+        const int positions = gltf.accessor("VEC3", band);
+        gltf.show({{"attributes", {{"POSITION", positions}}}, {"mode", mode}});
+        const Imported imported = read(gltf);
+        CHECK(imported.scene.meshes.empty());
+        CHECK(imported.losses.at(0).place == "box.gltf#/meshes/0/primitives/0");
+        return imported.losses.at(0).what;
+    };
+    CHECK(loss(0) == "6 points are ignored");
+    CHECK(loss(1) == "3 lines are ignored");
+    CHECK(loss(2) == "6 lines are ignored");
+    CHECK(loss(3) == "5 lines are ignored");
+}
+
+TEST_CASE("glTF meshes, read and normalise every component type") {
+    const auto first = [](const std::vector<Vec2f>& texcoords) {
+        REQUIRE(texcoords.size() == 3);
+        return Vec2f(texcoords[0].x, 1 - texcoords[0].y);  // glTF's v runs down
+    };
+    CHECK(first(texcoords_from(std::vector<std::uint8_t>{51, 255, 0, 0, 0, 0})) == Vec2f(0.2F, 1));
+    CHECK(first(texcoords_from(std::vector<std::uint16_t>{65535, 0, 0, 0, 0, 0})) == Vec2f(1, 0));
+    // -128 / 127 is less than -1.
+    CHECK(first(texcoords_from(std::vector<std::int8_t>{127, -128, 0, 0, 0, 0})) == Vec2f(1, -1));
+    CHECK(first(texcoords_from(std::vector<std::int16_t>{-32767, 32767, 0, 0, 0, 0})) ==
+          Vec2f(-1, 1));
+    CHECK(first(texcoords_from(std::vector<float>{0.25F, -3, 0, 0, 0, 0})) == Vec2f(0.25F, -3));
+}
+
+TEST_CASE("glTF meshes, read quantised positions as they are") {
+    Gltf gltf;
+    gltf.root["extensionsUsed"] = {"KHR_mesh_quantization"};
+    const int positions =
+        gltf.accessor("VEC3", std::vector<std::int16_t>{-5, 0, 0, 7, 0, 0, 0, 300, 0});
+    gltf.show({{"attributes", {{"POSITION", positions}}}});
+    CHECK(only_mesh(gltf).positions == std::vector<Vec3f>{{-5, 0, 0}, {7, 0, 0}, {0, 300, 0}});
+}
+
+TEST_CASE("glTF meshes, follow strides and offsets") {
+    Gltf gltf;
+    // Position and normal interleaved, after four bytes that belong to nobody.
+    const int view =
+        gltf.view(std::vector<float>{9, 0, 0, 0, 0, 0, 2, 1, 0, 0, 0, 0, 2, 0, 1, 0, 0, 0, 2},
+                  {{"byteStride", 24}});
+    json accessor = {{"bufferView", view},
+                     {"byteOffset", 4},
+                     {"componentType", 5126},
+                     {"count", 3},
+                     {"type", "VEC3"}};
+    const int positions = gltf.add("accessors", accessor);
+    accessor["byteOffset"] = 16;
+    const int normals = gltf.add("accessors", accessor);
+    gltf.show({{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}}});
+    const Mesh mesh = only_mesh(gltf);
+    CHECK(mesh.positions == std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    CHECK(mesh.normals == std::vector<Vec3f>(3, Vec3f(0, 0, 1)));  // made unit
+}
+
+TEST_CASE("glTF meshes, apply sparse accessors") {
+    Gltf gltf = test::triangle();
+    const int indices = gltf.view(std::vector<std::uint16_t>{2, 0});
+    const int values = gltf.view(std::vector<float>{0, 5, 0, -1, 0, 0});
+    json& accessor = gltf.root["accessors"][0];
+    accessor["sparse"] = {{"count", 2},
+                          {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
+                          {"values", {{"bufferView", values}}}};
+    CHECK(only_mesh(gltf).positions == std::vector<Vec3f>{{-1, 0, 0}, {1, 0, 0}, {0, 5, 0}});
+
+    accessor.erase("bufferView");  // zeros but for the sparse ones
+    CHECK(only_mesh(gltf).positions == std::vector<Vec3f>{{-1, 0, 0}, {0, 0, 0}, {0, 5, 0}});
+
+    accessor["sparse"]["indices"]["bufferView"] = gltf.view(std::vector<std::uint16_t>{2, 3});
+    CHECK(test::problem(gltf) ==
+          "box.gltf#/accessors/0/sparse: index 1 is 3, but there are 3 elements");
+}
+
+TEST_CASE("glTF meshes, take indices without a buffer view for zeros") {
+    Gltf gltf = test::triangle();
+    const int zeros =
+        gltf.add("accessors", {{"componentType", 5123}, {"count", 3}, {"type", "SCALAR"}});
+    gltf.root["meshes"][0]["primitives"][0]["indices"] = zeros;
+    CHECK(only_mesh(gltf).triangles == Triangles{{0, 0, 0}});
+}
+
+TEST_CASE("glTF meshes, copy only the vertices that a primitive uses") {
+    Gltf gltf;
+    const int positions = gltf.accessor("VEC3", band);
+    const int indices = gltf.accessor("SCALAR", std::vector<std::uint16_t>{5, 3, 4});
+    gltf.show({{"attributes", {{"POSITION", positions}}}, {"indices", indices}});
+    const Mesh mesh = only_mesh(gltf);
+    CHECK(mesh.positions == std::vector<Vec3f>{{1, 1, 0}, {2, 0, 0}, {2, 1, 0}});
+    CHECK(mesh.triangles == Triangles{{2, 0, 1}});
+}
+
+TEST_CASE("glTF meshes, read vertex colours in every form") {
+    const auto colors = [](const std::string& type, auto values, bool normalized) {
+        Gltf gltf = test::triangle();
+        gltf.root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+            gltf.accessor(type, values, {{"normalized", normalized}});
+        return only_mesh(gltf).colors;
+    };
+    const std::vector<Color> expected = {{1, 0, 0.2F}, {0, 1, 0}, {0, 0, 1}};
+    CHECK(colors("VEC3", std::vector<float>{1, 0, 0.2F, 0, 1, 0, 0, 0, 1}, false) == expected);
+    CHECK(colors("VEC4", std::vector<float>{1, 0, 0.2F, 9, 0, 1, 0, 9, 0, 0, 1, 9}, false) ==
+          expected);
+    CHECK(colors("VEC3", std::vector<std::uint8_t>{255, 0, 51, 0, 255, 0, 0, 0, 255}, true) ==
+          expected);
+    CHECK(colors("VEC4",
+                 std::vector<std::uint16_t>{65535, 0, 13107, 0, 0, 65535, 0, 0, 0, 0, 65535, 0},
+                 true) == expected);
+}
+
+TEST_CASE("glTF meshes, mend normals of length zero") {
+    Gltf gltf = test::triangle();
+    gltf.root["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
+        gltf.accessor("VEC3", std::vector<float>{0, 0, 0, 3, 0, 0, 0, 0, 0});
+    const Imported imported = read(gltf);
+    CHECK(imported.scene.meshes.at(0).normals ==
+          std::vector<Vec3f>{{0, 0, 1}, {1, 0, 0}, {0, 0, 1}});
+    CHECK(imported.losses ==
+          Losses{{"box.gltf#/meshes/0/primitives/0/attributes/NORMAL",
+                  "2 of 3 normals have no length; those of the facets are used"}});
+}
+
+TEST_CASE("glTF meshes, name what makes no triangle") {
+    Gltf gltf;
+    const int positions = gltf.accessor("VEC3", band);
+    const int indices = gltf.accessor("SCALAR", std::vector<std::uint16_t>{0, 1, 2, 3, 4});
+    gltf.show({{"attributes", {{"POSITION", positions}}}, {"indices", indices}});
+    const Imported imported = read(gltf);
+    CHECK(facet_count(imported.scene) == 1);
+    CHECK(imported.losses ==
+          Losses{{"box.gltf#/meshes/0/primitives/0", "2 indices at the end make no triangle"}});
+}

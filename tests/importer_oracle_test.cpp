@@ -1,0 +1,147 @@
+// Our importers against an independent one (assimp): what both make of a file must have the same
+// size, area, normals and texture coordinates in the world.
+#include "support.h"
+
+#include "penumbra/importers.h"
+
+#include <assimp/Importer.hpp>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <array>
+#include <cmath>
+
+using namespace penumbra;
+
+namespace {
+
+// Figures that depend on neither the order nor the splitting of facets. The sums over facets are
+// weighted by area, which leaves out those without.
+struct Shape {
+    Bounds box = {};
+    std::size_t facets = 0;
+    double area = 0;
+    Vec3 moment = {0, 0, 0};   // of the facets' centres
+    Vec3 normals = {0, 0, 0};  // of the vertex normals, where there are any
+    Vec2 texcoords = {0, 0};   // of the first set, where there is one
+
+    void add(const std::array<Vec3, 3>& corner, const Vec3& normal, const Vec2& texcoord) {
+        for (const Vec3& p : corner) box.extend(p);
+        const double a = (corner[1] - corner[0]).cross(corner[2] - corner[0]).length() / 2;
+        ++facets;
+        area += a;
+        moment += (corner[0] + corner[1] + corner[2]) * (a / 3);
+        normals += normal * a;
+        texcoords += texcoord * a;
+    }
+};
+
+// A normal in the world, whatever the scale.
+Vec3 world_normal(const Matrix& inverse, const Vec3& normal) {
+    Vec3 world;
+    inverse.transposed().multDirMatrix(normal, world);
+    return world.normalized();
+}
+
+Shape shape_of(const Scene& scene) {
+    Shape shape;
+    for (const Instance& instance : scene.instances) {
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        const Matrix inverse = instance.transform.inverse();
+        for (const auto& triangle : mesh.triangles) {
+            std::array<Vec3, 3> corner;
+            Vec3 normal(0);
+            Vec2 texcoord(0);
+            for (std::size_t i = 0; i < 3; ++i) {
+                const Index v = triangle[i];
+                corner[i] = Vec3(mesh.positions[v]) * instance.transform;
+                if (!mesh.normals.empty())
+                    normal += world_normal(inverse, Vec3(mesh.normals[v])) / 3;
+                if (!mesh.texcoords.empty()) texcoord += Vec2(mesh.texcoords[v]) / 3;
+            }
+            shape.add(corner, normal, texcoord);
+        }
+    }
+    return shape;
+}
+
+// assimp's matrices are for column vectors.
+Matrix matrix_of(const aiMatrix4x4& m) {
+    Matrix matrix;
+    for (unsigned row = 0; row < 4; ++row)
+        for (unsigned column = 0; column < 4; ++column)
+            matrix[int(column)][int(row)] = double(m[row][column]);
+    return matrix;
+}
+
+void add_node(const aiScene& scene, const aiNode& node, const Matrix& parent, Shape& shape) {
+    const Matrix world = matrix_of(node.mTransformation) * parent;
+    const Matrix inverse = world.inverse();
+    for (unsigned m = 0; m < node.mNumMeshes; ++m) {
+        const aiMesh& mesh = *scene.mMeshes[node.mMeshes[m]];
+        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+            if (mesh.mFaces[f].mNumIndices != 3) continue;
+            std::array<Vec3, 3> corner;
+            Vec3 normal(0);
+            Vec2 texcoord(0);
+            for (unsigned i = 0; i < 3; ++i) {
+                const unsigned v = mesh.mFaces[f].mIndices[i];
+                const auto vector = [](const aiVector3D& a) {
+                    return Vec3(double(a.x), double(a.y), double(a.z));
+                };
+                corner[i] = vector(mesh.mVertices[v]) * world;
+                if (mesh.HasNormals())
+                    normal += world_normal(inverse, vector(mesh.mNormals[v])) / 3;
+                if (mesh.HasTextureCoords(0)) {
+                    const Vec3 t = vector(mesh.mTextureCoords[0][v]);
+                    texcoord += Vec2(t.x, t.y) / 3;
+                }
+            }
+            shape.add(corner, normal, texcoord);
+        }
+    }
+    for (unsigned i = 0; i < node.mNumChildren; ++i)
+        add_node(scene, *node.mChildren[i], world, shape);
+}
+
+Shape assimp_shape(const test::fs::path& file) {
+    Assimp::Importer importer;
+    const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
+    Shape shape;
+    INFO(importer.GetErrorString());
+    REQUIRE(scene != nullptr);
+    add_node(*scene, *scene->mRootNode, Matrix(), shape);
+    return shape;
+}
+
+void check_same(const Shape& ours, const Shape& theirs) {
+    REQUIRE(ours.facets > 0);
+    CHECK(ours.facets == theirs.facets);
+    const double size = theirs.box.radius(), near = 1e-5;
+    CHECK((ours.box.min - theirs.box.min).length() <= near * size);
+    CHECK((ours.box.max - theirs.box.max).length() <= near * size);
+    CHECK(ours.area == Approx(theirs.area).epsilon(near));
+    const double far = std::max(size, theirs.box.center().length());
+    CHECK((ours.moment - theirs.moment).length() <= near * far * theirs.area);
+    CHECK((ours.normals - theirs.normals).length() <= 1e-4 * theirs.area);
+    CHECK((ours.texcoords - theirs.texcoords).length() <= 1e-4 * theirs.area);
+}
+
+}  // namespace
+
+TEST_CASE("Importers, read glTF as assimp does") {
+    if (!test::fs::exists(test::assets())) PENUMBRA_SKIP("the assets are not here");
+    for (const char* name :
+         {"Avocado/Avocado.gltf", "BoxInterleaved/BoxInterleaved.glb",
+          "BoxVertexColors/BoxVertexColors.gltf", "Cube/Cube.gltf", "LowPoly/low-poly.gltf",
+          "MultipleScenes/MultipleScenes.gltf", "NegativeScaleTest/NegativeScaleTest.glb",
+          "NormalTangentTest/NormalTangentTest.glb", "balloon/scene.gltf",
+          "SimpleDolly/simple-dolly.gltf", "SimpleMeshes/SimpleMeshes.gltf",
+          "SimpleSparseAccessor/SimpleSparseAccessor.gltf", "Suzanne/Suzanne.gltf",
+          "TextureCoordinateTest/TextureCoordinateTest.gltf", "camp/camp.gltf",
+          "garage/garage.gltf", "robot/robot.glb", "sunflower/sunflower.gltf"}) {
+        INFO(name);
+        const test::fs::path file = test::assets() / "gltf" / name;
+        check_same(shape_of(read_gltf(file).scene), assimp_shape(file));
+    }
+}

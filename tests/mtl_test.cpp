@@ -1,0 +1,411 @@
+#include "support.h"
+
+#include "penumbra/importers.h"
+
+#include <cmath>
+
+using namespace penumbra;
+
+namespace {
+
+namespace fs = std::filesystem;
+using Lines = std::vector<std::string>;
+
+const std::string facet = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n";
+
+// A model in a folder of its own whose only facet has material "a".
+struct Files {
+    test::TempDir folder = {};
+
+    fs::path path(const std::string& name) const { return folder.path / name; }
+
+    void image(const std::string& name) const {
+        fs::create_directories(path(name).parent_path());
+        Raster raster = {.width = 2, .height = 1, .channels = 3};
+        raster.data.assign(6, std::byte(200));
+        save_raster(path(name), raster);
+    }
+
+    Imported read(const std::string& mtl, const std::string& library = "a.mtl",
+                  const std::string& usemtl = "a") const {
+        test::write(path("a.mtl"), mtl);
+        return read_obj(test::write(path("m.obj"), "mtllib " + library + "\n" + facet + "usemtl " +
+                                                       usemtl + "\nf 1/1 2/2 3/3\n"));
+    }
+
+    Material material(const std::string& mtl) const {
+        const Imported imported = read(mtl);
+        REQUIRE(imported.scene.materials.size() == 1);
+        CHECK(lost(imported) == Lines{});
+        return imported.scene.materials[0];
+    }
+
+    Lines losses(const std::string& mtl) const { return lost(read(mtl)); }
+
+    // "a.mtl:7: what", with paths shortened.
+    Lines lost(const Imported& imported) const {
+        Lines result;
+        for (const Loss& loss : imported.losses) {
+            std::string line = loss.place + ": " + loss.what;
+            const std::string prefix = folder.path.string() + '/';
+            for (std::size_t at = line.find(prefix); at != std::string::npos;
+                 at = line.find(prefix))
+                line.erase(at, prefix.size());
+            result.push_back(line);
+        }
+        return result;
+    }
+};
+
+const Files files;  // shared where nothing but a.mtl and m.obj is written
+
+}  // namespace
+
+TEST_CASE("Mtl, an ordinary material becomes a Phong surface") {
+    const Material m = files.material("newmtl a\nKa 1 0.5 0\nKd 0.8 0.4 0.2\nKs 0.5 0.5 0.5\n"
+                                      "Ns 80\nillum 2\n");
+    CHECK(m.name == "a");
+    CHECK(m.color == Color(0.8F, 0.4F, 0.2F));
+    CHECK(m.diffuse == 1);
+    CHECK(m.ambient.x == Approx(0.1));
+    CHECK(m.ambient.y == Approx(0.05));
+    CHECK(m.ambient.z == 0);
+    CHECK(m.specular == Approx(0.5));
+    CHECK(m.shininess == 20);  // Ns / 4
+    CHECK(m.opacity == 1);
+    CHECK(m.ior == 1);
+    CHECK(m.reflection == Color(0));
+    CHECK(m.emission == Color(0));
+    CHECK(std::holds_alternative<std::monostate>(m.pattern));
+}
+
+TEST_CASE("Mtl, what is not given has a sensible value") {
+    const Material m = files.material("newmtl a\n");
+    CHECK(m.color == Color(0.8F));
+    CHECK(m.diffuse == 1);
+    CHECK(m.specular == 0);
+    CHECK(m.ambient.x == Approx(0.1));
+    CHECK(files.material("newmtl a\nKd 0.3\n").color == Color(0.3F));
+}
+
+TEST_CASE("Mtl, keys are known in upper and lower case") {
+    const Material m = files.material("NewMtl a\nkd 0.1 0.2 0.3\nKE 1 2 3\nNS 40\nks 1 1 1\n");
+    CHECK(m.color == Color(0.1F, 0.2F, 0.3F));
+    CHECK(m.emission == Color(1, 2, 3));
+    CHECK(m.shininess == 10);
+    CHECK(m.specular == Approx(1));
+}
+
+TEST_CASE("Mtl, illum says what of a material is used") {
+    const std::string text = "newmtl a\nKd 0.5 0.5 0.5\nKs 0.25 0.25 0.25\nNs 40\nillum ";
+    CHECK(files.material(text + "1\n").specular == 0);
+    CHECK(files.material(text + "2\n").specular == Approx(0.25));
+    CHECK(files.material(text + "2\n").reflection == Color(0));
+    for (const char* mirror : {"3", "5", "8"}) {
+        const Material m = files.material(text + mirror + "\n");
+        CHECK(m.reflection == Color(0.25F));
+        CHECK(m.specular == Approx(0.25));
+    }
+    const Material constant = files.material(text + "0\n");
+    CHECK(constant.emission == Color(0.5F));
+    CHECK(constant.diffuse == 0);
+    CHECK(constant.ambient == Color(0));
+    CHECK(constant.specular == 0);
+    CHECK(files.losses(text + "4\nd 0.5\n") ==
+          Lines{"a.mtl:1: material 'a': the mirror reflection of illum 4 is left out"});
+    CHECK(files.losses(text + "10\n") == Lines{"a.mtl:1: material 'a': illum 10 is taken as 2"});
+}
+
+TEST_CASE("Mtl, without illum there is a highlight only when Ks and Ns are given") {
+    CHECK(files.material("newmtl a\nKs 1 1 1\nNs 40\n").specular == Approx(1));
+    CHECK(files.material("newmtl a\nKs 1 1 1\n").specular == 0);
+    CHECK(files.material("newmtl a\nNs 40\n").specular == 0);
+}
+
+TEST_CASE("Mtl, a small exponent becomes no less than 1") {
+    CHECK(files.material("newmtl a\nKs 1 1 1\nNs 2\n").shininess == 1);
+}
+
+TEST_CASE("Mtl, glass bends light only where it lets it through") {
+    const auto ior = [](const std::string& more) {
+        return files.material("newmtl a\nNi 1.5\n" + more).ior;
+    };
+    CHECK(ior("d 0.3\nillum 9\n") == 1.5F);
+    CHECK(ior("d 0.3\nillum 6\n") == 1.5F);
+    CHECK(ior("d 0.3\nillum 2\n") == 1);
+    CHECK(ior("illum 4\n") == 1);
+    CHECK(files.material("newmtl a\nd 0.3\nillum 9\n").opacity == 0.3F);
+}
+
+TEST_CASE("Mtl, d and Tr are opposites and d wins") {
+    CHECK(files.material("newmtl a\nd 0.25\n").opacity == 0.25F);
+    CHECK(files.material("newmtl a\nTr 0.25\n").opacity == 0.75F);
+    CHECK(files.material("newmtl a\nTr 0.75\nd 0.25\n").opacity == 0.25F);
+    for (const std::string text : {"newmtl a\nTr 0.5\nd 0.25\n", "newmtl a\nd 0.25\nTr 0.5\n"}) {
+        const Imported imported = files.read(text);
+        CHECK(imported.scene.materials[0].opacity == 0.25F);
+        REQUIRE(imported.losses.size() == 1);
+        CHECK(imported.losses[0].what == "material 'a': Tr contradicts d; d is used");
+    }
+    const Imported invisible = files.read("newmtl a\nTr 1\n");
+    CHECK(invisible.scene.materials[0].opacity == 1);
+    CHECK(files.lost(invisible) ==
+          Lines{"a.mtl:2: material 'a': Tr 1 would make it invisible; it is taken as opaque"});
+    CHECK(files.losses("newmtl a\nd -halo 0.5\n") ==
+          Lines{"a.mtl:2: material 'a': the halo of d is ignored"});
+}
+
+TEST_CASE("Mtl, a coloured highlight becomes white and is said") {
+    const Imported imported = files.read("newmtl a\nKs 1 0 0\nNs 40\n");
+    CHECK(imported.scene.materials[0].specular == Approx(0.2126));
+    CHECK(files.lost(imported) == Lines{"a.mtl:1: material 'a': the coloured highlight (Ks) "
+                                        "becomes white of the same luminance"});
+}
+
+TEST_CASE("Mtl, the PBR extension is read as metallic and roughness") {
+    const Material read = files.material("newmtl a\nKd 1 0.5 0\nPm 1\nPr 0.3\nKs 1 0 0\nNs 9\n");
+    Material expected;
+    expected.color = Color(1, 0.5F, 0);
+    set_metallic_roughness(expected, 1, 0.3F);
+    CHECK(read.metallic == expected.metallic);
+    CHECK(read.specular == expected.specular);
+    CHECK(read.shininess == expected.shininess);
+    CHECK(read.diffuse == expected.diffuse);
+    CHECK(read.reflection == expected.reflection);
+    CHECK(read.color == Color(1, 0.5F, 0));
+    CHECK(files.losses("newmtl a\nPr 1\nPc 0.5\nPs 0\naniso 0.1\n") ==
+          Lines{"a.mtl:3: material 'a': Pc is ignored", "a.mtl:5: material 'a': aniso is ignored"});
+}
+
+TEST_CASE("Mtl, keys and maps that are not supported are said once each") {
+    CHECK(files.losses("newmtl a\nmap_Ks s.png\nmap_Bump b.png\nnorm n.png\nmap_ks t.png\n"
+                       "sharpness 60\nfoo 1\nfoo 2\nrefl -type sphere r.png\n") ==
+          Lines{"a.mtl:6: material 'a': sharpness is ignored",
+                "a.mtl:7: material 'a': foo is ignored", "a.mtl:2: material 'a': map_Ks is ignored",
+                "a.mtl:3: material 'a': map_Bump is ignored",
+                "a.mtl:4: material 'a': norm is ignored",
+                "a.mtl:9: material 'a': refl is ignored"});
+}
+
+TEST_CASE("Mtl, values that make no sense are said and mended") {
+    CHECK(files.losses("newmtl a\nKd 1 x 0\nKa\nd 7\nNs -3\nKe 1e99\nillum 99\n"
+                       "Ks spectral f.rfl\nNi nan\n") ==
+          Lines{"a.mtl:2: material 'a': Kd '1 x 0' is not a number and is ignored",
+                "a.mtl:3: material 'a': Ka without a number is ignored",
+                "a.mtl:8: material 'a': Ks 'spectral f.rfl' is not a number and is ignored",
+                "a.mtl:9: material 'a': Ni 'nan' is not a number and is ignored",
+                "a.mtl:6: material 'a': Ke 1e+99 is out of range; 3.403e+38 is used",
+                "a.mtl:5: material 'a': Ns -3 is out of range; 0 is used",
+                "a.mtl:4: material 'a': d 7 is out of range; 1 is used",
+                "a.mtl:7: material 'a': illum 99 is out of range; 10 is used",
+                "a.mtl:1: material 'a': illum 10 is taken as 2"});
+    CHECK(files.losses("Kd 1 1 1\nKs 1 1 1\nnewmtl a\nKd 0 1 0\nnewmtl a\nKd 1 0 0\n") ==
+          Lines{"a.mtl:1: what stands before newmtl is ignored",
+                "a.mtl:5: material 'a' is defined again; the first is used"});
+}
+
+TEST_CASE("Mtl, names may hold blanks and number signs") {
+    for (const std::string name : {"dark red wood", "Material #25", "a/b\\c", "r\xc3\xb6t"}) {
+        const Imported imported = files.read("newmtl " + name + "\r\nKd 0.5 0 0\n", "a.mtl", name);
+        CHECK(imported.scene.materials[0].name == name);
+        CHECK(imported.scene.materials[0].color == Color(0.5F, 0, 0));
+    }
+    const Imported commented =
+        files.read("newmtl red  # the first\nKd 0.5 0 0\n", "a.mtl # all", "red # here");
+    CHECK(commented.scene.materials[0].name == "red");
+    CHECK(commented.scene.materials[0].color == Color(0.5F, 0, 0));
+}
+
+TEST_CASE("Mtl, materials that no library has are said and keep their names") {
+    const Files own;
+    test::write(own.path("m.obj"), facet + "usemtl one\nf 1 2 3\nusemtl two\nf 1 3 2\n");
+    const Imported imported = read_obj(own.path("m.obj"));
+    CHECK(own.lost(imported) ==
+          Lines{"m.obj:7: material 'one' is not defined; it gets default values (and 1 more)"});
+    REQUIRE(imported.scene.materials.size() == 2);
+    CHECK(imported.scene.materials[1].name == "two");
+    CHECK(imported.scene.meshes[1].material == 1);
+}
+
+TEST_CASE("Mtl, an empty usemtl ends the material") {
+    const Files own;
+    test::write(own.path("m.obj"), facet + "usemtl\nf 1 2 3\n");
+    CHECK(read_obj(own.path("m.obj")).scene.meshes[0].material == no_index);
+}
+
+TEST_CASE("Mtl, libraries are found however they are written") {
+    const Files own;
+    const std::string red = "newmtl a\nKd 0.5 0 0\n";
+    const auto check = [&](const std::string& file, const std::string& written) {
+        test::write(own.path(file), red);
+        test::write(own.path("m.obj"), "mtllib " + written + "\n" + facet + "usemtl a\nf 1 2 3\n");
+        const Imported imported = read_obj(own.path("m.obj"));
+        CHECK(imported.scene.materials[0].color == Color(0.5F, 0, 0));
+        fs::remove(own.path(file));
+        return own.lost(imported);
+    };
+    CHECK(check("my red.mtl", "my red.mtl").empty());
+    CHECK(check("my red.mtl", "\"my red.mtl\"").empty());
+    CHECK(check("MyRed.MTL", "myred.mtl").empty());
+    CHECK(check("Sub/Dir/x.mtl", "sub\\DIR\\x.mtl").empty());
+    CHECK(check("x.mtl", "./y/../x.mtl").empty());
+    CHECK(check("x.mtl", "none.mtl x.mtl") ==
+          Lines{"m.obj:1: material library 'none.mtl' is not found"});
+    CHECK(check("x y.mtl", "none.mtl x y.mtl") ==
+          Lines{"m.obj:1: material library 'none.mtl' is not found"});
+    CHECK(check("x.mtl", "C:\\models\\x.mtl") ==
+          Lines{"m.obj:1: material library 'C:\\models\\x.mtl' lies outside the model's folder; "
+                "'x.mtl' beside the model is used"});
+}
+
+TEST_CASE("Mtl, all libraries are read") {
+    const Files own;
+    test::write(own.path("1.mtl"), "newmtl a\nKd 0.5 0 0\n");
+    test::write(own.path("2.mtl"), "newmtl b\nKd 0 0.5 0\n");
+    test::write(own.path("3.mtl"), "newmtl c\nKd 0 0 0.5\n");
+    test::write(own.path("m.obj"), facet + "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nmtllib 1.mtl "
+                                           "2.mtl\nmtllib 3.mtl\nusemtl c\nf 1 2 3\n");
+    const Imported imported = read_obj(own.path("m.obj"));
+    CHECK(imported.losses.empty());
+    REQUIRE(imported.scene.materials.size() == 3);
+    for (int i = 0; i < 3; ++i) CHECK(imported.scene.materials[std::size_t(i)].color[i] == 0.5F);
+}
+
+TEST_CASE("Mtl, nothing outside the model's folder is opened") {
+    const Files own;
+    fs::create_directory(own.path("model"));
+    test::write(own.path("secret.mtl"), "newmtl a\nKd 0.5 0 0\n");
+    fs::create_symlink(own.path("secret.mtl"), own.path("model/link.mtl"));
+    const auto check = [&](const std::string& written, const std::string& what) {
+        test::write(own.path("model/m.obj"),
+                    "mtllib " + written + "\n" + facet + "usemtl a\nf 1 2 3\n");
+        const Imported imported = read_obj(own.path("model/m.obj"));
+        CHECK(imported.scene.materials[0].color == Color(0.8F));
+        CHECK(own.lost(imported) ==
+              Lines{"model/m.obj:1: material library " + what,
+                    "model/m.obj:8: material 'a' is not defined; it gets default values"});
+    };
+    check("../secret.mtl", "'../secret.mtl' lies outside the model's folder");
+    check("..\\secret.mtl", "'..\\secret.mtl' lies outside the model's folder");
+    check("x/../../secret.mtl", "'x/../../secret.mtl' lies outside the model's folder");
+    check("/dev/zero", "'/dev/zero' lies outside the model's folder");
+    check("link.mtl", "'link.mtl' lies outside the model's folder");
+    check(".", "is ignored: model/.: is a folder");
+    check("none.mtl", "'none.mtl' is not found");
+}
+
+TEST_CASE("Mtl, map_Kd lays an image over the surface") {
+    const Files own;
+    own.image("wood.png");
+    const Imported imported = own.read("newmtl a\nKd 0.5 1 1\nmap_Kd wood.png\nmap_Ka wood.png\n");
+    CHECK(own.lost(imported).empty());
+    const Scene& scene = imported.scene;
+    REQUIRE(scene.textures.size() == 1);
+    CHECK(scene.textures[0].raster.width == 2);
+    CHECK(scene.textures[0].srgb);
+    CHECK(scene.textures[0].wrap_u == Wrap::repeat);
+    CHECK(std::get<ImageMap>(scene.materials[0].pattern).texture == 0);
+    CHECK(scene.materials[0].color == Color(0.5F, 1, 1));
+    CHECK(scene.meshes[0].texcoords == std::vector<Vec2f>{{0, 0}, {1, 0}, {0, 1}});
+    CHECK(own.material("newmtl a\nmap_Kd wood.png\n").color == Color(1));
+    CHECK(own.material("newmtl a\nKd 0 0 0\nmap_Kd wood.png\n").color == Color(1));
+    const Material constant = own.material("newmtl a\nKd 1 1 1\nmap_Kd wood.png\nillum 0\n");
+    CHECK(constant.ambient == Color(1));
+    CHECK(constant.emission == Color(0));
+}
+
+TEST_CASE("Mtl, texture names are found however they are written") {
+    const Files own;
+    own.image("tex/Light Wood 1.png");
+    for (const std::string written :
+         {"tex/Light Wood 1.png", ".\\TEX\\light wood 1.PNG", "\"tex/Light Wood 1.png\"",
+          "-blendu on -mm 0 1 tex/Light Wood 1.png", "tex/Light Wood 1.png -s 1 1 1 -bm 1",
+          "tex/Light Wood 1.png # best"})
+        CHECK(own.read("newmtl a\nmap_Kd " + written + "\n").scene.textures.size() == 1);
+    const Imported windows = own.read("newmtl a\nmap_Kd D:\\art\\wood.png\n");
+    CHECK(own.lost(windows) == Lines{"a.mtl:2: material 'a': texture 'D:\\art\\wood.png' lies "
+                                     "outside the model's folder; the plain colour is used"});
+}
+
+TEST_CASE("Mtl, names are relative to their library, then to the model") {
+    const Files own;
+    own.image("sub/here.png");
+    own.image("there.png");
+    test::write(own.path("sub/b.mtl"), "newmtl a\nmap_Kd here.png\n");
+    CHECK(own.read("", "sub/b.mtl").scene.textures.size() == 1);
+    test::write(own.path("sub/b.mtl"), "newmtl a\nmap_Kd there.png\n");
+    CHECK(own.read("", "sub/b.mtl").scene.textures.size() == 1);
+    test::write(own.path("sub/b.mtl"), "newmtl a\nmap_Kd ../there.png\n");
+    CHECK(own.read("", "sub/b.mtl").scene.textures.size() == 1);
+}
+
+TEST_CASE("Mtl, texture options change wrapping and coordinates or are said") {
+    const Files own;
+    own.image("t.png");
+    const Imported clamped = own.read("newmtl a\nmap_Kd -clamp on t.png\n");
+    CHECK(clamped.scene.textures[0].wrap_u == Wrap::clamp);
+    CHECK(clamped.scene.textures[0].wrap_v == Wrap::clamp);
+    for (const std::string operands : {"-s 2 3 1 -o 0.5 0.25 t.png", "t.png -o 0.5 0.25 0 -s 2 3"})
+        CHECK(own.read("newmtl a\nmap_Kd " + operands + "\n").scene.meshes[0].texcoords ==
+              std::vector<Vec2f>{{0.5F, 0.25F}, {2.5F, 0.25F}, {0.5F, 3.25F}});
+    CHECK(own.losses("newmtl a\nmap_Kd -t 1 1 1 -mm 0.1 1 -blendu on -imfchan r t.png\n") ==
+          Lines{"a.mtl:2: material 'a': option -t of map_Kd is ignored",
+                "a.mtl:2: material 'a': option -mm of map_Kd is ignored",
+                "a.mtl:2: material 'a': option -imfchan of map_Kd is ignored"});
+}
+
+TEST_CASE("Mtl, the same image is read once") {
+    const Files own;
+    own.image("t.png");
+    test::write(
+        own.path("a.mtl"),
+        "newmtl a\nmap_Kd t.png\nnewmtl b\nmap_Kd T.png\nnewmtl c\nmap_Kd -clamp on t.png\n");
+    test::write(own.path("m.obj"), "mtllib a.mtl\n" + facet +
+                                       "usemtl a\nf 1/1 2/2 3/3\nusemtl b\n"
+                                       "f 1/1 2/2 3/3\nusemtl c\nf 1/1 2/2 3/3\n");
+    const Imported imported = read_obj(own.path("m.obj"));
+    CHECK(imported.scene.textures.size() == 2);
+    CHECK(std::get<ImageMap>(imported.scene.materials[1].pattern).texture == 0);
+}
+
+TEST_CASE("Mtl, an image that cannot be had leaves the plain colour") {
+    const Files own;
+    test::write(own.path("broken.png"), "not a picture");
+    const auto check = [&](const std::string& name, const std::string& what) {
+        const Imported imported = own.read("newmtl a\nKd 0.5 0 0\nmap_Kd " + name + "\n");
+        CHECK(imported.scene.materials[0].color == Color(0.5F, 0, 0));
+        CHECK(std::holds_alternative<std::monostate>(imported.scene.materials[0].pattern));
+        REQUIRE(own.lost(imported).size() == 1);
+        CHECK_THAT(own.lost(imported)[0], Catch::Matchers::StartsWith(what));
+    };
+    check("none.png", "a.mtl:3: material 'a': texture 'none.png' is not found; the plain colour");
+    check("../up.png",
+          "a.mtl:3: material 'a': texture '../up.png' lies outside the model's folder");
+    check("broken.png", "a.mtl:3: material 'a': texture is ignored: broken.png: ");
+    check(".", "a.mtl:3: material 'a': texture is ignored: .: is a folder");
+    check("-s 1 1 1", "a.mtl:3: material 'a': texture without a file name is ignored");
+}
+
+TEST_CASE("Mtl, textured facets without texture coordinates are said") {
+    const Files own;
+    own.image("t.png");
+    test::write(own.path("a.mtl"), "newmtl a\nmap_Kd t.png\n");
+    test::write(own.path("m.obj"), "mtllib a.mtl\n" + facet + "usemtl a\nf 1/1 2/2 3/3\nf 1 2 3\n");
+    const Imported imported = read_obj(own.path("m.obj"));
+    CHECK(own.lost(imported) == Lines{"m.obj:10: facets of a textured material without texture "
+                                      "coordinates take those of the image's lower left corner"});
+    CHECK(imported.scene.meshes[0].texcoords.size() == imported.scene.meshes[0].positions.size());
+}
+
+TEST_CASE("Mtl, UTF-16 and byte order marks are read") {
+    CHECK(files.material("\xef\xbb\xbfnewmtl a\nKd 0.5 0 0\n").color == Color(0.5F, 0, 0));
+    std::string wide = "\xff\xfe";
+    for (const char c : std::string("newmtl a\nKd 0.5 0 0\n")) (wide += c) += '\0';
+    CHECK(files.material(wide).color == Color(0.5F, 0, 0));
+}
+
+TEST_CASE("Mtl, a hundred thousand materials that nobody uses cost nothing") {
+    std::string text = "newmtl a\nKd 0.5 0 0\n";
+    for (int i = 0; i < 100000; ++i) text += "newmtl m" + std::to_string(i) + "\nKd 1 1 1\n";
+    CHECK(files.read(text).scene.materials.size() == 1);
+}

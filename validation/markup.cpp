@@ -1,0 +1,104 @@
+#include "markup.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+
+namespace penumbra::markup {
+namespace {
+
+constexpr std::string_view replacement = "\xef\xbf\xbd";  // U+FFFD
+
+// Length of the valid character at the start of `rest` (RFC 3629), 0 if there is none.
+std::size_t character(std::string_view rest, std::uint32_t& code) {
+    const auto byte = [&](std::size_t i) { return std::uint32_t(std::uint8_t(rest[i])); };
+    const std::uint32_t lead = byte(0);
+    const std::size_t length = lead < 0x80            ? 1
+                               : lead >> 5 == 0b110   ? 2
+                               : lead >> 4 == 0b1110  ? 3
+                               : lead >> 3 == 0b11110 ? 4
+                                                      : 0;
+    if (length == 0 || length > rest.size()) return 0;
+    code = length == 1 ? lead : lead & (0x7fU >> length);
+    for (std::size_t i = 1; i < length; ++i) {
+        if (byte(i) >> 6 != 0b10) return 0;
+        code = code << 6 | (byte(i) & 0x3f);
+    }
+    constexpr std::array<std::uint32_t, 5> least = {0, 0, 0x80, 0x800, 0x10000};
+    const bool surrogate = code >= 0xd800 && code < 0xe000;
+    return code < least[length] || code > 0x10ffff || surrogate ? 0 : length;
+}
+
+// Char of XML 1.0, section 2.2, without the control characters that it merely discourages.
+bool allowed(std::uint32_t code) {
+    if (code == '\t' || code == '\n' || code == '\r') return true;
+    return code >= 0x20 && !(code >= 0x7f && code < 0xa0) && code != 0xfffe && code != 0xffff;
+}
+
+}  // namespace
+
+std::string clean(const std::string& text) {
+    std::string result;
+    for (std::string_view rest = text; !rest.empty();) {
+        std::uint32_t code = 0;
+        const std::size_t length = character(rest, code);
+        result += length > 0 && allowed(code) ? rest.substr(0, length) : replacement;
+        rest.remove_prefix(length > 0 ? length : 1);
+    }
+    return result;
+}
+
+std::string escaped(const std::string& text) {
+    std::string result;
+    for (const char c : clean(text)) {
+        switch (c) {
+        case '&': result += "&amp;"; break;
+        case '<': result += "&lt;"; break;
+        case '>': result += "&gt;"; break;
+        case '"': result += "&quot;"; break;
+        case '\'': result += "&#39;"; break;
+        default: result += c;
+        }
+    }
+    return result;
+}
+
+std::string link(const std::string& path) {
+    constexpr std::string_view plain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-._~/";
+    std::string result = path.starts_with('/') ? "" : "./";
+    for (const char c : path) {
+        if (plain.find(c) != std::string_view::npos)
+            result += c;
+        else
+            result += fmt::format("%{:02X}", std::uint8_t(c));
+    }
+    // "//host" would be another machine.
+    while (result.starts_with("//")) result.erase(0, 1);
+    return result;
+}
+
+std::string png_uri(std::span<const std::byte> png) {
+    constexpr std::string_view digits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string result = "data:image/png;base64,";
+    result.reserve(result.size() + (png.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < png.size(); i += 3) {
+        std::uint32_t group = 0;
+        for (std::size_t k = i; k < i + 3; ++k)
+            group = group << 8 | (k < png.size() ? std::to_integer<std::uint32_t>(png[k]) : 0);
+        for (std::size_t k = 0; k < 4; ++k)
+            result += i + k > png.size() ? '=' : digits[group >> (18 - 6 * k) & 63];
+    }
+    return result;
+}
+
+std::string number(double value, int digits) {
+    if (std::isnan(value)) return "\u2013";
+    return fmt::format("{:.{}g}", value, digits);
+}
+
+}  // namespace penumbra::markup

@@ -1,0 +1,60 @@
+// Structural similarity, and what pools a map of errors into one figure.
+#include "metrics.h"
+
+#include <opencv2/imgproc.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace penumbra::metrics {
+
+// Wang, Bovik, Sheikh, Simoncelli 2004, "Image Quality Assessment: From Error Visibility to
+// Structural Similarity", equation 13: K1 = 0.01, K2 = 0.03, L = 255. The window and the treatment
+// of borders (mirrored without the border pixel) are those of OpenCV's quality module.
+cv::Mat ssim_map(const cv::Mat& test_encoded, const cv::Mat& reference_encoded) {
+    constexpr double c1 = 6.5025, c2 = 58.5225;
+    const auto blur = [](const cv::Mat& image) {
+        cv::Mat result;
+        cv::GaussianBlur(image, result, {11, 11}, 1.5);
+        return result;
+    };
+    const cv::Mat a = test_encoded * 255, b = reference_encoded * 255;
+    const cv::Mat mean_a = blur(a), mean_b = blur(b);
+    const cv::Mat mean_aa = mean_a.mul(mean_a), mean_bb = mean_b.mul(mean_b);
+    const cv::Mat mean_ab = mean_a.mul(mean_b);
+    const cv::Mat variance_a = blur(a.mul(a)) - mean_aa, variance_b = blur(b.mul(b)) - mean_bb;
+    const cv::Mat covariance = blur(a.mul(b)) - mean_ab;
+    const cv::Scalar k1 = cv::Scalar::all(c1), k2 = cv::Scalar::all(c2);
+    const cv::Mat above = cv::Mat(mean_ab * 2 + k1).mul(cv::Mat(covariance * 2 + k2));
+    const cv::Mat below =
+        cv::Mat(mean_aa + mean_bb + k1).mul(cv::Mat(variance_a + variance_b + k2));
+    cv::Mat channels, result;
+    cv::divide(above, below, channels);
+    cv::transform(channels, result, cv::Matx13f::all(1.F / 3));
+    return result;
+}
+
+double worst_tile(const cv::Mat& map, int side, Worst worst) {
+    const int width = std::min(side, map.cols), height = std::min(side, map.rows);
+    const bool smallest = worst == Worst::smallest;
+    double result = cv::mean(map(cv::Rect(0, 0, width, height)))[0];
+    for (int top = 0; top < map.rows; top += side) {
+        for (int left = 0; left < map.cols; left += side) {
+            const cv::Rect tile(std::min(left, map.cols - width), std::min(top, map.rows - height),
+                                width, height);
+            const double mean = cv::mean(map(tile))[0];
+            result = smallest ? std::min(result, mean) : std::max(result, mean);
+        }
+    }
+    return result;
+}
+
+double quantile(const cv::Mat& map, double q) {
+    std::vector<float> values(map.begin<float>(), map.end<float>());
+    const auto rank = std::ptrdiff_t(std::ceil(q * double(values.size()))) - 1;
+    const auto at = values.begin() + std::clamp(rank, std::ptrdiff_t(0), std::ssize(values) - 1);
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+}  // namespace penumbra::metrics
