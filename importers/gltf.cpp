@@ -200,7 +200,6 @@ void Walker::camera(int index, const Matrix& world) {
     camera.direction = direction_of(world);
     world.multDirMatrix(Vec3(0, 1, 0), camera.up);
     camera.side = Camera::Side::vertical;
-    const std::string pointer = fmt::format("/cameras/{}", node.camera);
     if (camera.direction.cross(camera.up).length() < 1e-9 * camera.up.length() ||
         camera.up.length() == 0) {
         reader.lose(fmt::format("/nodes/{}", index), "its scale leaves the camera no view");
@@ -210,8 +209,10 @@ void Walker::camera(int index, const Matrix& world) {
         camera.projection = Camera::Projection::orthographic;
         camera.extent = 2 * std::abs(source.orthographic.ymag);
         if (camera.extent == 0)
-            throw Error(Failure::input, reader.document.place(pointer + "/orthographic/ymag"),
-                        "must not be 0");
+            throw Error(
+                Failure::input,
+                reader.document.place(fmt::format("/cameras/{}/orthographic/ymag", node.camera)),
+                "must not be 0");
     } else {
         camera.fov = source.perspective.yfov;
     }

@@ -52,6 +52,7 @@ struct Checker {
     double checked_number(const json& value, const Rule& rule, const Step* at) const;
     void array_of_numbers(const json& value, const Rule& rule, const Step* at) const;
     void bring_into_range(json& value, const Rule& rule, const Step* at);
+    void cameras() const;
 };
 
 void Checker::follow(json& value, std::string_view path, const Rule& rule, const Step* at) {
@@ -183,6 +184,16 @@ void Checker::bring_into_range(json& value, const Rule& rule, const Step* at) {
                                                                 before, rule.high, value.dump())});
 }
 
+// What a camera must have depends on its type.
+void Checker::cameras() const {
+    for (std::size_t i = 0; root.contains("cameras") && i < root["cameras"].size(); ++i) {
+        const auto type = root["cameras"][i]["type"].get<std::string>();
+        if (!root["cameras"][i].contains(type))
+            throw Error(Failure::input, fmt::format("{}#/cameras/{}", file, i),
+                        fmt::format("has no '{}'", type));
+    }
+}
+
 }  // namespace
 
 void check_schema(json& root, const std::string& file, Losses& losses) {
@@ -193,6 +204,7 @@ void check_schema(json& root, const std::string& file, Losses& losses) {
         root.erase("scene");
     }
     for (const Rule& rule : schema) checker.follow(root, rule.path, rule, &start);
+    checker.cameras();
 }
 
 }  // namespace penumbra::gltf

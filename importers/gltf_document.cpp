@@ -81,9 +81,9 @@ void add_size_callback(Callbacks& files) {
         };
 }
 
-// JSON -> structures. Three things that tinygltf 2.7 refuses although they are valid or harmless
-// are kept from it: buffers without content, accessors without a buffer view that serve as
-// indices, and strides that are no multiple of four.
+// JSON -> structures. Some things that tinygltf 2.7 refuses although they are valid or harmless are
+// kept from it: buffers without content, accessors without a buffer view that serve as indices,
+// strides that are no multiple of four, spot lights with all defaults.
 tinygltf::Model parse_model(json root, const std::string& file) {
     for (const char* key : {"buffers", "images", "extras"}) root.erase(key);
     json& views = root["bufferViews"];
@@ -95,6 +95,10 @@ tinygltf::Model parse_model(json root, const std::string& file) {
         view.erase("byteStride");
     }
     views.push_back({{"buffer", 0}, {"byteLength", 0}});
+    const json::json_pointer lights("/extensions/KHR_lights_punctual/lights");
+    if (root.contains(lights))
+        for (json& light : root[lights])
+            if (!light.contains("spot")) light["spot"] = json::object();
     if (root.contains("accessors"))
         for (json& accessor : root["accessors"])
             if (!accessor.contains("bufferView")) accessor["bufferView"] = view_count;
@@ -108,7 +112,8 @@ tinygltf::Model parse_model(json root, const std::string& file) {
     const std::string text = root.dump();
     if (!parser.LoadASCIIFromString(&model, &error, &warning, text.c_str(), unsigned(text.size()),
                                     ""))
-        throw Error(Failure::input, file, "tinygltf refuses it: " + printable(error));
+        throw Error(Failure::input, file,
+                    "tinygltf refuses it: " + printable(error.substr(0, error.find('\n'))));
 
     model.bufferViews.pop_back();
     for (std::size_t i = 0; i < view_count; ++i) model.bufferViews[i].byteStride = strides[i];

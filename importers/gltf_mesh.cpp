@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -156,35 +157,29 @@ Range used_vertices(const Part& part, Triangles& triangles) {
     return {.first = low, .count = std::size_t(high - low) + 1};
 }
 
-// Unit normals; those of length zero become the mean of the facets around them.
+// Unit normals; those of length zero become the mean of the facets around them. In double, as the
+// square of a float may be out of range.
 void repair_normals(const Part& part, Mesh& mesh) {
-    std::vector<bool> missing(mesh.normals.size(), false);
-    std::size_t count = 0;
+    std::map<Index, Vec3> missing;
     for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
-        if (mesh.normals[i].length() > 1e-6F) {
-            mesh.normals[i].normalize();
-        } else {
-            mesh.normals[i] = Vec3f(0);
-            missing[i] = true;
-            ++count;
-        }
+        const Vec3 normal(mesh.normals[i]);
+        if (const double length = normal.length(); length > 1e-6)
+            mesh.normals[i] = Vec3f(normal / length);
+        else
+            missing.emplace(Index(i), Vec3(0));
     }
-    if (count == 0) return;
+    if (missing.empty()) return;
     part.reader.lose(part.pointer + "/attributes/NORMAL",
                      fmt::format("{} of {} normals have no length; those of the facets are used",
-                                 count, mesh.normals.size()));
-    for (const auto& [a, b, c] : mesh.triangles) {
-        if (!missing[a] && !missing[b] && !missing[c]) continue;
-        const Vec3f& p = mesh.positions[a];
-        const Vec3f area = (mesh.positions[b] - p).cross(mesh.positions[c] - p);
-        for (const Index corner : {a, b, c})
-            if (missing[corner]) mesh.normals[corner] += area;
+                                 missing.size(), mesh.normals.size()));
+    for (const auto& triangle : mesh.triangles) {
+        const auto corner = [&](std::size_t i) { return Vec3(mesh.positions[triangle[i]]); };
+        for (const Index vertex : triangle)
+            if (const auto found = missing.find(vertex); found != missing.end())
+                found->second += (corner(1) - corner(0)).cross(corner(2) - corner(0));
     }
-    for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
-        if (!missing[i]) continue;
-        const Vec3f sum = mesh.normals[i];
-        mesh.normals[i] = sum.length() > 0 ? sum.normalized() : Vec3f(0, 1, 0);
-    }
+    for (const auto& [vertex, sum] : missing)
+        mesh.normals[vertex] = sum.length() > 0 ? Vec3f(sum.normalized()) : Vec3f(0, 1, 0);
 }
 
 void read_texcoords(const Part& part, Range range, Mesh& mesh) {

@@ -176,6 +176,11 @@ inline constexpr std::array schema = {
     factor("/materials/*/extensions/KHR_materials_pbrSpecularGlossiness/glossinessFactor", 0),
     reference("/materials/*/extensions/KHR_materials_pbrSpecularGlossiness/diffuseTexture/index!",
               "/textures"),
+    whole("/materials/*/extensions/KHR_materials_pbrSpecularGlossiness/diffuseTexture/texCoord", 0,
+          largest_int),
+    whole("/materials/*/extensions/KHR_materials_pbrSpecularGlossiness/diffuseTexture/extensions/"
+          "KHR_texture_transform/texCoord",
+          0, largest_int),
     reference("/materials/*/extensions/KHR_materials_pbrSpecularGlossiness/"
               "specularGlossinessTexture/index!",
               "/textures"),
@@ -183,7 +188,11 @@ inline constexpr std::array schema = {
     text("/cameras/*/name"),
     choice("/cameras/*/type!", "perspective orthographic"),
     number("/cameras/*/perspective/yfov!", 0.00001, 3.14159),
+    number("/cameras/*/perspective/znear!", -largest_float),
+    number("/cameras/*/orthographic/xmag!", -largest_float),
     number("/cameras/*/orthographic/ymag!", -largest_float),
+    number("/cameras/*/orthographic/zfar!", -largest_float),
+    number("/cameras/*/orthographic/znear!", -largest_float),
 
     reference("/skins/*/joints!/*", "/nodes"),
     reference("/skins/*/skeleton", "/nodes"),

@@ -36,7 +36,7 @@ constexpr auto options = std::to_array<Option>({
     {"-imfchan", 1, "l"},
     {"-type", 1},
     {"-cc", 1},
-    {"-colorspace", 1},
+    {"-colorspace", 1, "srgb"},
 });
 
 const Option* option_of(std::string_view word) {
@@ -50,10 +50,6 @@ float number(std::string_view word) {
     float value = 0;
     std::from_chars(word.data(), word.data() + word.size(), value);
     return value;
-}
-
-bool all_equal(const std::vector<std::string_view>& words, float value) {
-    return std::ranges::all_of(words, [&](auto word) { return number(word) == value; });
 }
 
 // The operands that belong to `option`, taken off `rest`.
@@ -70,6 +66,14 @@ std::vector<std::string_view> operands_of(const Option& option, std::string_view
     return result;
 }
 
+// Whether the operands say what holds without the option.
+bool is_harmless(const Option& option, const std::vector<std::string_view>& words,
+                 const std::string& given) {
+    if (option.name == "-t")
+        return std::ranges::all_of(words, [](auto word) { return number(word) == 0; });
+    return lower_case(given) == option.harmless;
+}
+
 // In u' = scale u + offset, as other readers of the format take -s and -o.
 void apply(const Option& option, const std::vector<std::string_view>& words, MapOperands& result) {
     const auto pair = [&](double fallback) {
@@ -84,11 +88,7 @@ void apply(const Option& option, const std::vector<std::string_view>& words, Map
         result.frame.scale = pair(1);
     else if (option.name == "-o")
         result.frame.offset = pair(0);
-    else if (option.name == "-t" && all_equal(words, 0))
-        return;
-    else if (option.name == "-colorspace" && lower_case(given) == "srgb")
-        return;
-    else if (given != option.harmless)
+    else if (!is_harmless(option, words, given))
         result.ignored.emplace_back(option.name);
 }
 

@@ -63,7 +63,7 @@ std::vector<Library> listed(std::string_view operand, const fs::path& folder, bo
 // The files that a mtllib means: one name with blanks, as most programs write it, if there is such
 // a file; else a list of names, with blanks or, as the format defines it, without.
 std::vector<Library> files_of(std::string_view operand, const fs::path& folder) {
-    const std::vector whole = {Library{std::string(operand), find_below(folder, {}, operand)}};
+    std::vector whole = {Library{std::string(operand), find_below(folder, {}, operand)}};
     const auto exists = [](const Library& library) { return !library.found.file.empty(); };
     for (const auto& names : {whole, listed(operand, folder, true), listed(operand, folder, false)})
         if (std::ranges::any_of(names, exists)) return names;

@@ -149,7 +149,7 @@ struct Reader {
         return float(inside);
     }
 
-    std::optional<Color> color(std::string_view folded, const double (&read)[3]) {
+    std::optional<Color> color(std::string_view folded, const double* read) {
         if (!given.contains(folded)) return {};
         Color result(0);
         for (int i = 0; i < 3; ++i) result[i] = *value(folded, read[i]);

@@ -48,25 +48,38 @@ std::string from_utf16(std::string_view bytes, bool big_endian) {
     return text;
 }
 
-// Number of bytes of the UTF-8 sequence at `at` (RFC 3629); 0 if it is not valid.
+// A row of RFC 3629's table of well-formed sequences; bytes after the second are 80 to bf.
+struct Utf8Row {
+    unsigned first_lead = 0, last_lead = 0, least_second = 0x80, most_second = 0xbf;
+    std::size_t length = 1;
+};
+constexpr auto utf8_rows = std::to_array<Utf8Row>({
+    {0x00, 0x7f},
+    {0xc2, 0xdf, 0x80, 0xbf, 2},
+    {0xe0, 0xe0, 0xa0, 0xbf, 3},
+    {0xe1, 0xec, 0x80, 0xbf, 3},
+    {0xed, 0xed, 0x80, 0x9f, 3},
+    {0xee, 0xef, 0x80, 0xbf, 3},
+    {0xf0, 0xf0, 0x90, 0xbf, 4},
+    {0xf1, 0xf3, 0x80, 0xbf, 4},
+    {0xf4, 0xf4, 0x80, 0x8f, 4},
+});
+
+// Number of bytes of the UTF-8 sequence at `at`; 0 if it is not valid.
 std::size_t sequence_length(std::string_view text, std::size_t at) {
     const auto byte = [&](std::size_t i) {
         return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0U;
     };
-    const auto tails = [&](std::size_t n) {
-        for (std::size_t i = 1; i < n; ++i)
-            if ((byte(i) & 0xc0U) != 0x80U) return std::size_t(0);
-        return n;
-    };
-    const unsigned lead = byte(0), second = byte(1);
-    if (lead < 0x80) return 1;
-    if (lead >= 0xc2 && lead < 0xe0) return tails(2);
-    if (lead == 0xe0 && second < 0xa0) return 0;
-    if (lead == 0xed && second >= 0xa0) return 0;
-    if (lead >= 0xe0 && lead < 0xf0) return tails(3);
-    if (lead == 0xf0 && second < 0x90) return 0;
-    if (lead == 0xf4 && second >= 0x90) return 0;
-    return lead >= 0xf0 && lead < 0xf5 ? tails(4) : 0;
+    for (const Utf8Row& row : utf8_rows) {
+        if (byte(0) < row.first_lead || byte(0) > row.last_lead) continue;
+        for (std::size_t i = 1; i < row.length; ++i) {
+            const unsigned least = i == 1 ? row.least_second : 0x80;
+            const unsigned most = i == 1 ? row.most_second : 0xbf;
+            if (byte(i) < least || byte(i) > most) return 0;
+        }
+        return row.length;
+    }
+    return 0;
 }
 
 bool is_utf8(std::string_view text) {

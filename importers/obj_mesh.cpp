@@ -67,7 +67,8 @@ struct Builder {
 
     Vec2f texcoord(Index index) const {
         if (index == no_index) return Vec2f(0);
-        return Vec2f(model.texcoords[index] * frame.scale + frame.offset);
+        const Vec2 placed = model.texcoords[index] * frame.scale + frame.offset;
+        return {float(placed.x), float(placed.y)};
     }
 
     Index vertex(const Corner& corner) {

@@ -128,7 +128,8 @@ struct Parser {
         for (const Face& face : model.faces)
             for (std::size_t i = face.first; i < face.first + face.count; ++i) {
                 Index& index = model.corners[i].*member;
-                if (index < count || index == no_index) continue;
+                if (index < count) continue;
+                if (index == no_index && member != &Corner::position) continue;
                 if (count > 0 || member == &Corner::position)
                     fail(face.line,
                          fmt::format("{} {} of {} does not exist", what, index + 1, count));

@@ -153,27 +153,30 @@ struct Cleaner {
         (result.text += "vt ") += rest;
     }
 
+    // Takes an index off the front of `rest`, up to a slash; returns false when there is none.
+    bool take_index(std::string_view& rest, std::string_view word) const {
+        if (rest.size() > 1 && rest[0] == '+' && rest[1] != '-') rest.remove_prefix(1);
+        int value = 0;
+        const auto [next, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+        if (error == std::errc::result_out_of_range)
+            fail(fmt::format("index '{}' is out of range", printable(word)));
+        if (error != std::errc{}) return false;
+        rest.remove_prefix(std::size_t(next - rest.data()));
+        if (!rest.empty() && rest.front() != '/') return false;
+        if (value == 0) fail(fmt::format("'{}' has the index 0; the first is 1", printable(word)));
+        return true;
+    }
+
     // "7", "7/1", "7//3", "7/1/3", and "7/", "7//", "7/1/", which lose the slashes at their end.
     std::string_view corner(std::string_view word) const {
         std::string_view kept = word;
         while (kept.ends_with('/')) kept.remove_suffix(1);
-        const char* at = kept.data();
-        const char* const end = at + kept.size();
+        std::string_view rest = kept;
         for (int part = 0; part < 3; ++part) {
-            const bool omitted = part == 1 && at < end && *at == '/';
-            if (!omitted) {
-                if (at < end && *at == '+') ++at;
-                long value = 0;
-                const auto [next, error] = std::from_chars(at, end, value);
-                if (error == std::errc::result_out_of_range || std::abs(value) > 0x7fffffff)
-                    fail(fmt::format("index '{}' is out of range", printable(word)));
-                if (error != std::errc{} || (next != end && *next != '/')) break;
-                if (value == 0)
-                    fail(fmt::format("'{}' has the index 0; the first is 1", printable(word)));
-                at = next;
-            }
-            if (at == end) return kept;
-            ++at;
+            const bool omitted = part == 1 && rest.starts_with('/');
+            if (!omitted && !take_index(rest, word)) break;
+            if (rest.empty()) return kept;
+            rest.remove_prefix(1);
         }
         fail(fmt::format("'{}' is not a vertex of the form v, v/vt, v//vn or v/vt/vn",
                          printable(word)));

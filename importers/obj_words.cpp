@@ -14,6 +14,26 @@ constexpr bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\f' && 
 
 constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
+// Takes [+-] off the front of `text`.
+void skip_sign(std::string_view& text) {
+    if (text.starts_with('+') || text.starts_with('-')) text.remove_prefix(1);
+}
+
+// Takes digits off the front of `text`; returns how many there were.
+std::size_t skip_digits(std::string_view& text) {
+    std::size_t count = 0;
+    while (count < text.size() && is_digit(text[count])) ++count;
+    text.remove_prefix(count);
+    return count;
+}
+
+// A word that C libraries print for a value that is no number: nan, -nan(ind), inf, 1.#IND.
+bool names_no_number(std::string_view word) {
+    skip_sign(word);
+    const std::string start = lower_case(word.substr(0, 3));
+    return start == "nan" || start == "inf" || start == "1.#";
+}
+
 }  // namespace
 
 std::string place_of(const std::string& file, Index line) {
@@ -63,36 +83,24 @@ std::string_view name_without_comment(std::string_view text) {
     return trim(text);
 }
 
-// [+-] (digits [. digits*] | . digits) [eE [+-] digits]; or a word that C libraries print for a
-// value that is no number: nan, -nan(ind), inf, infinity, 1.#IND, -1.#QNAN.
+// [+-] (digits [. digits*] | . digits) [eE [+-] digits]
 Word kind_of(std::string_view word) {
-    std::size_t at = 0;
-    const auto peek = [&] { return at < word.size() ? word[at] : '\0'; };
-    const auto digits = [&] {
-        const std::size_t begin = at;
-        while (is_digit(peek())) ++at;
-        return at - begin;
-    };
-    if (peek() == '+' || peek() == '-') ++at;
-    const std::string_view unsigned_word = word.substr(at);
-    std::size_t mantissa = digits();
-    if (peek() == '.') {
-        ++at;
-        mantissa += digits();
+    std::string_view rest = word;
+    skip_sign(rest);
+    std::size_t mantissa = skip_digits(rest);
+    if (rest.starts_with('.')) {
+        rest.remove_prefix(1);
+        mantissa += skip_digits(rest);
     }
-    bool fits = true;
-    if (mantissa > 0 && (peek() == 'e' || peek() == 'E')) {
-        ++at;
-        if (peek() == '+' || peek() == '-') ++at;
-        const std::size_t count = digits();
-        if (count == 0) return Word::other;
-        fits = count < 9;  // tinyobjloader reads more as zero
+    std::size_t exponent = 1;
+    if (mantissa > 0 && (rest.starts_with('e') || rest.starts_with('E'))) {
+        rest.remove_prefix(1);
+        skip_sign(rest);
+        exponent = skip_digits(rest);
     }
-    if (mantissa > 0 && at == word.size()) return fits ? Word::number : Word::not_finite;
-    const std::string folded = lower_case(unsigned_word.substr(0, 4));
-    const bool not_finite =
-        folded.starts_with("nan") || folded.starts_with("inf") || folded.starts_with("1.#");
-    return not_finite ? Word::not_finite : Word::other;
+    if (mantissa == 0 || exponent == 0 || !rest.empty())
+        return names_no_number(word) ? Word::not_finite : Word::other;
+    return exponent < 9 ? Word::number : Word::not_finite;  // tinyobjloader reads more as zero
 }
 
 std::string lower_case(std::string_view text) {

@@ -168,6 +168,8 @@ bool Section::read(const std::string& key, float& value, const Range& range) {
     if (node == nullptr) return false;
     const double wide = number(key, *node, range);
     if (!std::isfinite(float(wide))) wrong(key, *node, fmt::format("is too large: {}", wide));
+    if (!range.contains(double(float(wide))))
+        wrong(key, *node, fmt::format("is too near to the end of its range: {}", wide));
     value = float(wide);
     return true;
 }

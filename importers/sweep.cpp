@@ -113,36 +113,48 @@ struct Sweep {
         return true;
     }
 
-    // `piece` is monotone, counter-clockwise.
-    bool cut_piece(const std::vector<Index>& piece) {
-        const std::size_t n = piece.size();
+    struct Link {
+        Index corner = 0;
+        bool left = false;  // on the chain from the top down the left side, the top included
+    };
+
+    // The corners of a monotone, counter-clockwise piece from top to bottom.
+    std::vector<Link> from_top(const std::vector<Index>& piece) const {
         const auto higher = [&](Index a, Index b) { return above(at(a), at(b)); };
         const auto top = std::min_element(piece.begin(), piece.end(), higher) - piece.begin();
         const auto bottom = std::max_element(piece.begin(), piece.end(), higher) - piece.begin();
-        std::vector<std::pair<Index, bool>> left, right, order;  // true: on the left chain
-        for (auto i = std::size_t(top); i != std::size_t(bottom); i = (i + 1) % n)
-            left.emplace_back(piece[i], true);
-        for (auto i = std::size_t(bottom); i != std::size_t(top); i = (i + 1) % n)
-            right.emplace_back(piece[i], false);
+        std::vector<Link> left, right, order;
+        for (auto i = std::size_t(top); i != std::size_t(bottom); i = (i + 1) % piece.size())
+            left.push_back({piece[i], true});
+        for (auto i = std::size_t(bottom); i != std::size_t(top); i = (i + 1) % piece.size())
+            right.push_back({piece[i], false});
         std::reverse(right.begin(), right.end());
-        std::merge(left.begin(), left.end(), right.begin(), right.end(), std::back_inserter(order),
-                   [&](const auto& a, const auto& b) { return higher(a.first, b.first); });
+        std::ranges::merge(left, right, std::back_inserter(order), higher, &Link::corner,
+                           &Link::corner);
+        return order;
+    }
 
-        std::vector<std::pair<Index, bool>> stack = {order[0], order[1]};
-        for (std::size_t i = 2; i < n; ++i) {
-            const auto [corner, on_left] = order[i];
-            const auto last = stack.back();
-            const bool other_side = on_left != last.second || i + 1 == n;
-            while (stack.size() > 1) {
-                const auto [b, b_left] = stack.back();
-                const Index a = stack[stack.size() - 2].first;
-                const bool fits = b_left ? turn(at(a), at(b), at(corner)) > 0
-                                         : turn(at(b), at(a), at(corner)) > 0;
-                if (!other_side && !fits) break;
-                if (!(b_left ? triangle(a, b, corner) : triangle(b, a, corner))) return false;
-                stack.pop_back();
-            }
-            if (other_side) stack = {last};
+    // Cuts triangles with `tip` off the chain that ends with stack.back(): all of them, or, when
+    // the tip continues the chain, those that turn the right way.
+    bool cut_corners(std::vector<Link>& stack, Index tip, bool all) {
+        while (stack.size() > 1) {
+            Index a = stack[stack.size() - 2].corner, b = stack.back().corner;
+            if (!stack.back().left) std::swap(a, b);
+            if (!all && !(turn(at(a), at(b), at(tip)) > 0)) return true;
+            if (!triangle(a, b, tip)) return false;
+            stack.pop_back();
+        }
+        return true;
+    }
+
+    bool cut_piece(const std::vector<Index>& piece) {
+        const std::vector<Link> order = from_top(piece);
+        std::vector<Link> stack = {order[0], order[1]};
+        for (std::size_t i = 2; i < order.size(); ++i) {
+            const Link last = stack.back();
+            const bool opposite = order[i].left != last.left || i + 1 == order.size();
+            if (!cut_corners(stack, order[i].corner, opposite)) return false;
+            if (opposite) stack = {last};
             stack.push_back(order[i]);
         }
         return true;
@@ -172,6 +184,7 @@ struct Sweep {
     bool cut_pieces() {
         std::vector<std::vector<Index>> around = neighbours();
         std::vector<std::vector<bool>> done;
+        done.reserve(around.size());
         for (const auto& of_corner : around) done.emplace_back(of_corner.size());
         for (Index start = 0; start < corners.size(); ++start) {
             for (std::size_t from = 1; from < around[start].size(); ++from) {

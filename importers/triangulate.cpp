@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <deque>
 #include <memory>
 #include <random>
 
@@ -93,7 +93,8 @@ bool is_tangled(std::span<const Vec2> flat) {
     std::minstd_rand random;
     const std::size_t n = flat.size();
     const auto split = [&](std::size_t edge, std::size_t other) {
-        const Vec2 a = flat[edge], along = flat[(edge + 1) % n] - a;
+        const Vec2& a = flat[edge];
+        const Vec2 along = flat[(edge + 1) % n] - a;
         return along.cross(flat[other] - a) * along.cross(flat[(other + 1) % n] - a) < 0;
     };
     int crossings = 0;
@@ -105,28 +106,26 @@ bool is_tangled(std::span<const Vec2> flat) {
 }
 
 // What GLU's tessellator works on, and the receiver of its callbacks. Vertices go to and fro as
-// pointers that hold their index + 1.
+// pointers to their index.
 struct Tessellation {
     Triangulation* result = nullptr;
     std::span<const Vec3> corners = {};
     Vec3 u = Vec3(0), v = Vec3(0), normal = Vec3(0);
     Triangle triangle = {};
-    int known = 0;  // corners of `triangle`
+    int known = 0;                   // corners of `triangle`
+    std::deque<Index> indices = {};  // a deque does not move them
     bool failed = false;
+
+    Index* next_index() { return &indices.emplace_back(Index(indices.size())); }
 
     Vec3 position(std::size_t i) const {
         return i < corners.size() ? corners[i] : result->added[i - corners.size()].position;
     }
 };
 
-void* to_pointer(std::size_t index) {
-    return reinterpret_cast<void*>(static_cast<std::uintptr_t>(index) + 1);
-}
-std::size_t to_index(const void* pointer) { return reinterpret_cast<std::uintptr_t>(pointer) - 1; }
-
 void GLAPIENTRY on_vertex(void* vertex, void* data) {
     Tessellation& work = *static_cast<Tessellation*>(data);
-    work.triangle[std::size_t(work.known++)] = Index(to_index(vertex));
+    work.triangle[std::size_t(work.known++)] = *static_cast<const Index*>(vertex);
     if (work.known < 3) return;
     work.result->triangles.push_back(work.triangle);
     work.known = 0;
@@ -139,7 +138,7 @@ void GLAPIENTRY on_error(GLenum, void* data) { static_cast<Tessellation*>(data)-
 
 // GLU's weights are float32, so the place in the plane comes from its coordinates and only the
 // height above the plane from the weights.
-void GLAPIENTRY on_combine(GLdouble at[3], void* from[4], GLfloat weight[4], void** out,
+void GLAPIENTRY on_combine(const GLdouble* at, void* const* from, const GLfloat* weight, void** out,
                            void* data) {
     Tessellation& work = *static_cast<Tessellation*>(data);
     const Vec3 origin = work.corners[0];
@@ -149,12 +148,12 @@ void GLAPIENTRY on_combine(GLdouble at[3], void* from[4], GLfloat weight[4], voi
         if (from[i]) sum += double(weight[i]);
     for (std::size_t i = 0; i < 4; ++i) {
         if (!from[i]) continue;
-        added.from[i] = Index(to_index(from[i]));
+        added.from[i] = *static_cast<const Index*>(from[i]);
         added.weight[i] = double(weight[i]) / sum;
         height += added.weight[i] * (work.position(added.from[i]) - origin).dot(work.normal);
     }
     added.position = origin + work.u * at[0] + work.v * at[1] + work.normal * height;
-    *out = to_pointer(work.corners.size() + work.result->added.size());
+    *out = work.next_index();
     work.result->added.push_back(added);
 }
 
@@ -183,7 +182,7 @@ void tessellate(Triangulation& result, std::span<const Vec3> corners, const Vec3
     for (std::size_t i = 0; i < corners.size(); ++i) {
         const Vec3 offset = corners[i] - corners[0];
         std::array<GLdouble, 3> at = {offset.dot(u), offset.dot(v), 0};
-        gluTessVertex(tess, at.data(), to_pointer(i));
+        gluTessVertex(tess, at.data(), work.next_index());
     }
     gluTessEndContour(tess);
     gluTessEndPolygon(tess);
@@ -209,12 +208,12 @@ void cut_large(Triangulation& result, std::span<const Vec3> corners, const Vec3&
 // bent polygons, where another choice of diagonals would be visible.
 void measure(Triangulation& result, std::span<const Vec3> corners, const Vec3& normal,
              double scale2) {
-    const auto position = [&](std::size_t i) {
+    const auto position = [&](std::size_t i) -> const Vec3& {
         return i < corners.size() ? corners[i] : result.added[i - corners.size()].position;
     };
     double flat = 0;
     for (const Triangle& t : result.triangles) {
-        const Vec3 a = position(t[0]);
+        const Vec3& a = position(t[0]);
         const Vec3 cross = (position(t[1]) - a).cross(position(t[2]) - a);
         result.area += 0.5 * cross.length();
         flat += 0.5 * cross.dot(normal);

@@ -1,6 +1,7 @@
 #include "lighting.h"
 
 #include "shapes.h"
+#include "simd.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,88 +14,130 @@ namespace {
 // point of a normalised scene by up to 1e-6, and shadow_margin is 1e-3.
 constexpr double grazing_sine = 4e-3;
 
-constexpr double least_light = 1e-10;  // POV-Ray skips a source whose light is weaker
+constexpr double least_light = 1e-10;   // POV-Ray skips a source whose light is weaker
+constexpr std::size_t block_size = 64;  // neighbouring surface points that are tested together
 
-// Direction, distance and cosine from every surface point to the source: plain loops over arrays.
-void aim(const PreparedSource& source, const Surfaces& surfaces, LightWork& work) {
-    const auto& [px, py, pz] = surfaces.position.axis;
-    const auto& [nx, ny, nz] = surfaces.normal.axis;
-    auto& [lx, ly, lz] = work.toward.axis;
-    const std::size_t count = surfaces.count;
-    if (source.type == Light::Type::directional) {
-        for (std::size_t i = 0; i < count; ++i) {
-            lx[i] = -source.axis.x;
-            ly[i] = -source.axis.y;
-            lz[i] = -source.axis.z;
-            work.distance[i] = (px[i] - source.position.x) * source.axis.x +
-                               (py[i] - source.position.y) * source.axis.y +
-                               (pz[i] - source.position.z) * source.axis.z;
-        }
-    } else {
-        for (std::size_t i = 0; i < count; ++i) {
-            const double x = source.position.x - px[i], y = source.position.y - py[i],
-                         z = source.position.z - pz[i];
-            const double length = std::sqrt(x * x + y * y + z * z), scale = 1 / length;
-            lx[i] = x * scale;
-            ly[i] = y * scale;
-            lz[i] = z * scale;
-            work.distance[i] = length;
-        }
+// ---- dense loops over arrays -------------------------------------------------------------------
+
+// Arrays of one vector each, for loops that the compiler turns into SIMD code.
+struct Lanes {
+    const double *x, *y, *z;
+    explicit Lanes(const Vectors& v)
+        : x(v.axis[0].data()), y(v.axis[1].data()), z(v.axis[2].data()) {}
+};
+
+PENUMBRA_VECTORISED
+void aim_at_point(const Vec3& source, Lanes position, std::size_t count, double* __restrict lx,
+                  double* __restrict ly, double* __restrict lz, double* __restrict distance) {
+    const double sx = source.x, sy = source.y, sz = source.z;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double x = sx - position.x[i], y = sy - position.y[i], z = sz - position.z[i];
+        const double length = std::sqrt(x * x + y * y + z * z), scale = 1 / length;
+        lx[i] = x * scale;
+        ly[i] = y * scale;
+        lz[i] = z * scale;
+        distance[i] = length;
     }
+}
+
+PENUMBRA_VECTORISED
+void aim_along(const Vec3& source, const Vec3& axis, Lanes position, std::size_t count,
+               double* __restrict lx, double* __restrict ly, double* __restrict lz,
+               double* __restrict distance) {
+    const double sx = source.x, sy = source.y, sz = source.z, ax = axis.x, ay = axis.y, az = axis.z;
+    for (std::size_t i = 0; i < count; ++i) {
+        lx[i] = -ax;
+        ly[i] = -ay;
+        lz[i] = -az;
+        distance[i] =
+            (position.x[i] - sx) * ax + (position.y[i] - sy) * ay + (position.z[i] - sz) * az;
+    }
+}
+
+PENUMBRA_VECTORISED
+void dot_products(Lanes a, Lanes b, std::size_t count, double* __restrict out) {
     for (std::size_t i = 0; i < count; ++i)
-        work.cosine[i] = nx[i] * lx[i] + ny[i] * ly[i] + nz[i] * lz[i];
+        out[i] = a.x[i] * b.x[i] + a.y[i] * b.y[i] + a.z[i] * b.z[i];
 }
 
-// f_a, and the falloff of a spot: POV-Ray's cubic smoothstep in the cosine.
-double strength_of(const PreparedSource& source, double distance, const Vec3& toward) {
-    double strength = 1;
-    if (source.fades) {
-        const double ratio = distance / source.fade_distance;
-        const double power =
-            source.fade_power == 2 ? ratio * ratio : std::pow(ratio, source.fade_power);
-        strength = 2 / (1 + power);
-    }
-    if (source.type == Light::Type::spot) {
-        const double cosine = -source.axis.dot(toward);
-        if (cosine <= 0 || cosine <= source.cos_outer) return 0;
-        if (cosine < source.cos_inner) {
-            const double s = (cosine - source.cos_outer) / (source.cos_inner - source.cos_outer);
-            strength *= s * s * (3 - 2 * s);
-        }
-    }
-    return strength;
+// 1 where the surface faces the source, else 0.
+PENUMBRA_VECTORISED
+void facing(const double* __restrict cosine, std::size_t count, double* __restrict arriving) {
+    for (std::size_t i = 0; i < count; ++i) arriving[i] = cosine[i] < least_cosine ? 0.0 : 1.0;
 }
 
-// Lists the surface points that the source lights unless something stands between.
-void gather_lit(const PreparedSource& source, const Surfaces& surfaces, LightWork& work) {
+// f_a for the usual power, 2.
+PENUMBRA_VECTORISED
+void fade_by_square(const double* __restrict distance, double fade_distance, std::size_t count,
+                    double* __restrict arriving) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const double ratio = distance[i] / fade_distance;
+        arriving[i] *= 2 / (1 + ratio * ratio);
+    }
+}
+
+PENUMBRA_VECTORISED
+void add_diffuse(const double* __restrict pigment, double color, const double* __restrict arriving,
+                 const double* __restrict cosine, const double* __restrict diffuse,
+                 std::size_t count, double* __restrict radiance) {
+    for (std::size_t i = 0; i < count; ++i)
+        radiance[i] += color * (pigment[i] * (diffuse[i] * cosine[i] * arriving[i]));
+}
+
+// ---- one source --------------------------------------------------------------------------------
+
+void aim(const PreparedSource& source, const Surfaces& surfaces, LightWork& work) {
+    auto& [lx, ly, lz] = work.toward.axis;
+    const Lanes position(surfaces.position);
+    if (source.type == Light::Type::directional)
+        aim_along(source.position, source.axis, position, surfaces.count, lx.data(), ly.data(),
+                  lz.data(), work.distance.data());
+    else
+        aim_at_point(source.position, position, surfaces.count, lx.data(), ly.data(), lz.data(),
+                     work.distance.data());
+    dot_products(Lanes(surfaces.normal), Lanes(work.toward), surfaces.count, work.cosine.data());
+}
+
+// The falloff of a spot: POV-Ray's cubic smoothstep in the cosine.
+double spot_falloff(const PreparedSource& source, const Vec3& toward) {
+    const double cosine = -source.axis.dot(toward);
+    if (cosine <= 0 || cosine <= source.cos_outer) return 0;
+    if (cosine >= source.cos_inner) return 1;
+    const double s = (cosine - source.cos_outer) / (source.cos_inner - source.cos_outer);
+    return s * s * (3 - 2 * s);
+}
+
+// The share of the source's light that would arrive with nothing in its way.
+void weigh(const PreparedSource& source, const Surfaces& surfaces, LightWork& work) {
+    double* arriving = work.arriving.data();
+    facing(work.cosine.data(), surfaces.count, arriving);
+    if (source.fades && source.fade_power == 2)
+        fade_by_square(work.distance.data(), source.fade_distance, surfaces.count, arriving);
+    else if (source.fades)
+        for (std::size_t i = 0; i < surfaces.count; ++i)
+            arriving[i] *=
+                2 / (1 + std::pow(work.distance[i] / source.fade_distance, source.fade_power));
+    if (source.type == Light::Type::spot)
+        for (std::size_t i = 0; i < surfaces.count; ++i)
+            if (arriving[i] != 0) arriving[i] *= spot_falloff(source, work.toward[i]);
+}
+
+// Lists the points that get light unless something stands in its way, and may have that. Returns
+// whether any point gets light at all.
+bool gather_lit(const PreparedSource& source, const Surfaces& surfaces, LightWork& work) {
     const double brightest = std::max({source.color.x, source.color.y, source.color.z});
+    bool any = false;
     work.lit.clear();
     for (std::size_t i = 0; i < surfaces.count; ++i) {
-        if (work.cosine[i] < least_cosine) continue;
-        const Finish& finish = *surfaces.finish[i];
-        if (finish.diffuse == 0 && finish.specular == 0) continue;
-        work.strength[i] = strength_of(source, work.distance[i], work.toward[i]);
-        if (brightest * work.strength[i] < least_light) continue;
-        work.lit.push_back(i);
+        if (brightest * work.arriving[i] < least_light) {
+            work.arriving[i] = 0;
+            continue;
+        }
+        any = true;
+        if (work.open[i] == 0 && (surfaces.diffuse[i] > 0 || surfaces.specular[i] > 0))
+            work.lit.push_back(i);
     }
-}
-
-void cast_shadow_rays(const World& world, const Surfaces& surfaces, LightWork& work) {
-    ShadowRays& rays = work.shadows;
-    rays.count = work.lit.size();
-    for (std::size_t k = 0; k < rays.count; ++k) {
-        const std::size_t i = work.lit[k];
-        const Vec3 toward = work.toward[i], facet_normal = surfaces.facet_normal[i];
-        rays.origin.set(k, surfaces.position[i]);
-        rays.direction.set(k, toward);
-        rays.distance[k] = work.distance[i];
-        const bool on_facet = surfaces.object[i] < world.first_sphere();
-        rays.grazing[k] = on_facet && std::abs(facet_normal.dot(toward)) < grazing_sine;
-        work.visible[k] = 1;
-    }
-    const std::span<unsigned char> visible(work.visible.data(), rays.count);
-    block_by_shapes(world, rays, visible);
-    world.facets.block(rays, visible);
+    return any;
 }
 
 // What translucent surfaces leave of the light along a shadow ray: a factor for each crossing,
@@ -112,40 +155,124 @@ double filtered(const World& world, const Vec3& origin, const Vec3& toward, doub
     return light;
 }
 
-Vec3 highlight(const Finish& finish, const Vec3& view, const Vec3& normal, const Vec3& toward,
-               double cosine, const Vec3& pigment) {
-    const Vec3 mirrored = view - normal * (2 * view.dot(normal));
-    const double k = mirrored.dot(toward);
-    if (k <= 0 || k < finish.highlight_end) return Vec3(0);
-    const double amount = finish.specular * std::pow(k, finish.shininess);
-    return finish.metallic > 0 ? metallic_tint(finish.metallic, cosine, pigment) * amount
-                               : Vec3(amount);
+void cast_shadows(const World& world, const Surfaces& surfaces, LightWork& work) {
+    ShadowRays& rays = work.shadows;
+    rays.count = work.lit.size();
+    if (rays.count == 0) return;
+    for (std::size_t k = 0; k < rays.count; ++k) {
+        const std::size_t i = work.lit[k];
+        const Vec3 toward = work.toward[i];
+        rays.origin.set(k, surfaces.position[i]);
+        rays.direction.set(k, toward);
+        rays.distance[k] = work.distance[i];
+        rays.object[k] = surfaces.object[i];
+        const bool on_facet = surfaces.object[i] < world.first_sphere();
+        rays.grazing[k] = on_facet && std::abs(surfaces.facet_normal[i].dot(toward)) < grazing_sine;
+        work.visible[k] = 1;
+    }
+    const std::span<unsigned char> visible(work.visible.data(), rays.count);
+    block_by_shapes(world, rays, visible);
+    world.facets.block(rays, visible);
+    for (std::size_t k = 0; k < rays.count; ++k) {
+        const std::size_t i = work.lit[k];
+        if (visible[k] == 0)
+            work.arriving[i] = 0;
+        else if (world.translucent)
+            work.arriving[i] *=
+                filtered(world, surfaces.position[i], work.toward[i], work.distance[i]);
+    }
 }
 
-void shade(const World& world, const PreparedSource& source, const Surfaces& surfaces,
-           const LightWork& work, std::vector<Vec3>& radiance) {
-    for (std::size_t k = 0; k < work.lit.size(); ++k) {
-        if (work.visible[k] == 0) continue;
-        const std::size_t i = work.lit[k];
+void add_highlights(const PreparedSource& source, const Surfaces& surfaces, LightWork& work,
+                    Vectors& radiance) {
+    // The cosine of incidence has served; its array takes that of the mirrored eye ray.
+    std::vector<double>& mirrored_cosine = work.distance;
+    dot_products(Lanes(surfaces.mirrored), Lanes(work.toward), surfaces.count,
+                 mirrored_cosine.data());
+    for (std::size_t i = 0; i < surfaces.count; ++i) {
+        const double k = mirrored_cosine[i];
+        if (k <= 0 || work.arriving[i] == 0 || surfaces.specular[i] == 0) continue;
         const Finish& finish = *surfaces.finish[i];
-        const Vec3 toward = work.toward[i], pigment = surfaces.pigment[i];
-        double strength = work.strength[i];
-        if (world.translucent)
-            strength *= filtered(world, surfaces.position[i], toward, work.distance[i]);
-        const Vec3 light = source.color * strength;
-        Vec3 sent = pigment * (finish.diffuse * work.cosine[i] * finish.opacity);
-        if (finish.specular > 0)
-            sent += highlight(finish, surfaces.view[i], surfaces.normal[i], toward, work.cosine[i],
-                              pigment);
-        radiance[i] += light * sent;
+        if (k < finish.highlight_end) continue;
+        const double amount = finish.specular * std::pow(k, finish.shininess) * work.arriving[i];
+        Vec3 light = source.color * amount;
+        if (finish.metallic > 0)
+            light *= metallic_tint(finish.metallic, work.cosine[i], surfaces.pigment[i]);
+        for (std::size_t c = 0; c < 3; ++c) radiance.axis[c][i] += light[int(c)];
+    }
+}
+
+void add_source(const World& world, const PreparedSource& source, const Surfaces& surfaces,
+                LightWork& work, Vectors& radiance) {
+    aim(source, surfaces, work);
+    weigh(source, surfaces, work);
+    if (!gather_lit(source, surfaces, work)) return;
+    cast_shadows(world, surfaces, work);
+    for (std::size_t c = 0; c < 3; ++c)
+        add_diffuse(surfaces.pigment.axis[c].data(), source.color[int(c)], work.arriving.data(),
+                    work.cosine.data(), surfaces.diffuse.data(), surfaces.count,
+                    radiance.axis[c].data());
+    add_highlights(source, surfaces, work, radiance);
+}
+
+// ---- one light ---------------------------------------------------------------------------------
+
+// The range of n . p over a box.
+std::pair<double, double> extent_along(const Bounds& box, const Vec3& n) {
+    const Vec3 center = box.center(), half = (box.max - box.min) * 0.5;
+    const double middle = n.dot(center);
+    const double reach = std::abs(n.x) * half.x + std::abs(n.y) * half.y + std::abs(n.z) * half.z;
+    return {middle - reach, middle + reach};
+}
+
+// Do all segments between the boxes stay on one side of the plane (or start on it)?
+bool plane_between(const PreparedPlane& plane, const Bounds& from, const Bounds& to) {
+    const auto [low, high] = extent_along(from, plane.frame.normal);
+    const auto [source_low, source_high] = extent_along(to, plane.frame.normal);
+    constexpr double on_it = 1e-9;
+    const bool above = low >= plane.distance - on_it && source_low > plane.distance;
+    const bool below = high <= plane.distance + on_it && source_high < plane.distance;
+    return !above && !below;
+}
+
+bool all_open(const World& world, const SourceGroup& light, const Bounds& points) {
+    for (const PreparedPlane& plane : world.planes)
+        if (plane_between(plane, points, light.box)) return false;
+    return !may_block(world.blockers, points, light.box);
+}
+
+Bounds bounds_of(const Surfaces& surfaces, std::size_t first, std::size_t last) {
+    Bounds box;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto& values = surfaces.position.axis[axis];
+        const auto [low, high] = std::minmax_element(values.begin() + std::ptrdiff_t(first),
+                                                     values.begin() + std::ptrdiff_t(last));
+        box.min[int(axis)] = *low;
+        box.max[int(axis)] = *high;
+    }
+    return box;
+}
+
+// Marks the points that nothing can shade from this light: first all of them, then block by block.
+void find_open(const World& world, const SourceGroup& light, const Surfaces& surfaces,
+               LightWork& work) {
+    if (all_open(world, light, bounds_of(surfaces, 0, surfaces.count))) {
+        std::fill_n(work.open.begin(), surfaces.count, 1);
+        return;
+    }
+    for (std::size_t first = 0; first < surfaces.count; first += block_size) {
+        const std::size_t last = std::min(first + block_size, surfaces.count);
+        const bool open = all_open(world, light, bounds_of(surfaces, first, last));
+        std::fill(work.open.begin() + std::ptrdiff_t(first),
+                  work.open.begin() + std::ptrdiff_t(last), open);
     }
 }
 
 }  // namespace
 
 LightWork::LightWork(std::size_t capacity)
-    : toward(capacity), distance(capacity), cosine(capacity), strength(capacity), shadows(capacity),
-      visible(capacity) {
+    : toward(capacity), distance(capacity), cosine(capacity), arriving(capacity), open(capacity),
+      shadows(capacity), visible(capacity) {
     lit.reserve(capacity);
 }
 
@@ -157,17 +284,17 @@ Vec3 metallic_tint(double metallic, double cosine, const Vec3& pigment) {
 }
 
 void add_direct_light(const World& world, const Surfaces& surfaces, LightWork& work,
-                      std::vector<Vec3>& radiance) {
+                      Vectors& radiance) {
+    if (surfaces.count == 0) return;
     for (std::size_t i = 0; i < surfaces.count; ++i) {
         const Finish& finish = *surfaces.finish[i];
-        radiance[i] += (surfaces.pigment[i] * finish.ambient + finish.emission) * finish.opacity;
+        const Vec3 own = (surfaces.pigment[i] * finish.ambient + finish.emission) * finish.opacity;
+        for (std::size_t c = 0; c < 3; ++c) radiance.axis[c][i] += own[int(c)];
     }
-    for (const PreparedSource& source : world.sources) {
-        aim(source, surfaces, work);
-        gather_lit(source, surfaces, work);
-        if (work.lit.empty()) continue;
-        cast_shadow_rays(world, surfaces, work);
-        shade(world, source, surfaces, work, radiance);
+    for (const SourceGroup& light : world.lights) {
+        find_open(world, light, surfaces, work);
+        for (const PreparedSource& source : light.sources)
+            add_source(world, source, surfaces, work, radiance);
     }
 }
 

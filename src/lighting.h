@@ -5,11 +5,13 @@
 
 namespace penumbra {
 
-/// Scratch space of add_direct_light(), kept between calls.
+/// Scratch space of add_direct_light(), kept between calls. One entry a surface point.
 struct LightWork {
-    Vectors toward;  ///< unit, to the source
-    std::vector<double> distance, cosine, strength;
-    std::vector<std::size_t> lit;  ///< surface points that face the source
+    Vectors toward;                        ///< unit, to the source
+    std::vector<double> distance, cosine;  ///< to the source; of the angle of incidence
+    std::vector<double> arriving;          ///< share of the source's light: f_a, spot, shadow
+    std::vector<unsigned char> open;       ///< nothing can stand between the point and the light
+    std::vector<std::size_t> lit;          ///< surface points that need a shadow ray
     ShadowRays shadows;
     std::vector<unsigned char> visible;
 
@@ -21,8 +23,8 @@ struct LightWork {
 /// 3.7, ComputePhongColour).
 Vec3 metallic_tint(double metallic, double cosine, const Vec3& pigment);
 
-/// Adds ambient, emitted, diffuse and highlight terms of every surface point to radiance[i].
+/// Adds ambient, emitted, diffuse and highlight terms of every surface point to radiance.
 void add_direct_light(const World& world, const Surfaces& surfaces, LightWork& work,
-                      std::vector<Vec3>& radiance);
+                      Vectors& radiance);
 
 }  // namespace penumbra

@@ -3,6 +3,7 @@
 
 #include "penumbra/math.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <span>
@@ -26,6 +27,10 @@ struct Vectors {
     explicit Vectors(std::size_t capacity = 0) { resize(capacity); }
     void resize(std::size_t count) {
         for (auto& values : axis) values.resize(count);
+    }
+    /// Zeroes the first `count` entries, of which there are at least so many afterwards.
+    void clear(std::size_t count) {
+        for (auto& values : axis) values.assign(std::max(count, values.size()), 0.0);
     }
     Vec3 operator[](std::size_t i) const { return {axis[0][i], axis[1][i], axis[2][i]}; }
     void set(std::size_t i, const Vec3& v) {
@@ -57,11 +62,13 @@ struct ShadowRays {
     std::size_t count = 0;
     Vectors origin, direction;           ///< directions are unit
     std::vector<double> distance;        ///< to the source
+    std::vector<Index> object;           ///< that the ray starts on
     std::vector<unsigned char> grazing;  ///< leaves its facet at so small an angle that float32
                                          ///< could find that facet again
 
     explicit ShadowRays(std::size_t capacity = 0)
-        : origin(capacity), direction(capacity), distance(capacity), grazing(capacity) {}
+        : origin(capacity), direction(capacity), distance(capacity), object(capacity),
+          grazing(capacity) {}
 };
 
 }  // namespace penumbra

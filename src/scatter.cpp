@@ -48,10 +48,6 @@ double cross(const World& world, Interiors& inside, Index object) {
     return ratio;
 }
 
-Vec3 mirrored(const Vec3& view, const Vec3& normal) {
-    return (view - normal * (2 * view.dot(normal))).normalized();
-}
-
 }  // namespace
 
 void scatter(const World& world, const Surfaces& surfaces, std::size_t slot, const Path& path,
@@ -80,7 +76,7 @@ void scatter(const World& world, const Surfaces& surfaces, std::size_t slot, con
         } else {
             Path back = path;
             ++back.level;
-            next.push(position, mirrored(view, normal), back);
+            next.push(position, surfaces.mirrored[slot].normalized(), back);
         }
     }
     if (finish.mirrors && !total) {
@@ -90,7 +86,7 @@ void scatter(const World& world, const Surfaces& surfaces, std::size_t slot, con
         if (finish.metallic > 0)
             share *= metallic_tint(finish.metallic, -view.dot(normal), surfaces.pigment[slot]);
         back.weight *= share;
-        next.push(position, mirrored(view, normal), back);
+        next.push(position, surfaces.mirrored[slot].normalized(), back);
     }
 }
 

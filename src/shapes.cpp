@@ -55,16 +55,29 @@ void closest_shapes(const World& world, const Rays& rays, Hits& hits) {
 }
 
 void block_by_shapes(const World& world, const ShadowRays& rays, std::span<unsigned char> visible) {
-    for (std::size_t i = 0; i < rays.count; ++i) {
-        const double end = rays.distance[i] - shadow_margin;
-        each_shape(world, rays.origin[i], rays.direction[i],
-                   [&](Index object, const Crossings& crossings) {
-                       for (int k = 0; k < crossings.count; ++k) {
-                           const double t = crossings.t[std::size_t(k)];
-                           if (t > shadow_margin && t < end && world.finish_of(object).opacity >= 1)
-                               visible[i] = 0;
-                       }
-                   });
+    const auto blocked = [](const Crossings& crossings, double end) {
+        for (int k = 0; k < crossings.count; ++k)
+            if (crossings.t[std::size_t(k)] > shadow_margin && crossings.t[std::size_t(k)] < end)
+                return true;
+        return false;
+    };
+    Index object = world.first_sphere();
+    for (const Sphere& sphere : world.scene.spheres) {
+        if (world.finish_of(object++).opacity < 1) continue;
+        for (std::size_t i = 0; i < rays.count; ++i)
+            if (visible[i] != 0 && blocked(cross_sphere(sphere, rays.origin[i], rays.direction[i]),
+                                           rays.distance[i] - shadow_margin))
+                visible[i] = 0;
+    }
+    for (const PreparedPlane& plane : world.planes) {
+        const Index self = object++;
+        if (world.finish_of(self).opacity < 1) continue;
+        for (std::size_t i = 0; i < rays.count; ++i)
+            // A ray never meets the plane again that it starts on.
+            if (visible[i] != 0 && rays.object[i] != self &&
+                blocked(cross_plane(plane, rays.origin[i], rays.direction[i]),
+                        rays.distance[i] - shadow_margin))
+                visible[i] = 0;
     }
 }
 

@@ -7,8 +7,10 @@
 namespace penumbra {
 
 void Surfaces::resize(std::size_t capacity) {
-    for (Vectors* vectors : {&position, &normal, &view, &facet_normal}) vectors->resize(capacity);
-    pigment.resize(capacity);
+    for (Vectors* vectors : {&position, &normal, &view, &mirrored, &facet_normal, &pigment})
+        vectors->resize(capacity);
+    diffuse.resize(capacity);
+    specular.resize(capacity);
     object.resize(capacity);
     finish.resize(capacity);
 }
@@ -115,7 +117,10 @@ void find_surface(const World& world, const Vec3& origin, const Vec3& direction,
     surfaces.normal.set(slot, g.normal);
     surfaces.view.set(slot, direction);
     surfaces.facet_normal.set(slot, g.facet_normal);
-    surfaces.pigment[slot] = pigment_at(world, finish, g, point, plane);
+    surfaces.mirrored.set(slot, direction - g.normal * (2 * direction.dot(g.normal)));
+    surfaces.pigment.set(slot, pigment_at(world, finish, g, point, plane));
+    surfaces.diffuse[slot] = finish.diffuse * finish.opacity;
+    surfaces.specular[slot] = finish.specular;
     surfaces.object[slot] = hit.object;
     surfaces.finish[slot] = &finish;
 }

@@ -9,10 +9,11 @@ namespace penumbra {
 /// Surface points of one generation, in arrays.
 struct Surfaces {
     std::size_t count = 0;
-    Vectors position, normal,
-        view;              ///< normal is unit and turned towards the eye; view comes from it
-    Vectors facet_normal;  ///< unit geometric normal; zero on spheres and planes
-    std::vector<Vec3> pigment;
+    Vectors position, normal, view;  ///< normal is unit and turned to the eye; view comes from it
+    Vectors mirrored;                ///< view mirrored by the normal; unit but for rounding
+    Vectors facet_normal;            ///< unit geometric normal; zero on spheres and planes
+    Vectors pigment;
+    std::vector<double> diffuse, specular;  ///< K_D x opacity, K_S
     std::vector<Index> object;
     std::vector<const Finish*> finish;
 

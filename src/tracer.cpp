@@ -43,7 +43,7 @@ struct Workspace {
     Hits hits;
     Surfaces surfaces;
     std::vector<std::size_t> ray_of;  // surface point -> ray
-    std::vector<Vec3> radiance;
+    Vectors radiance;
     LightWork light;
     std::vector<Vec3> pixels;  // of the tile
 
@@ -98,7 +98,7 @@ void find_hits(const World& world, bool coherent, Workspace& work) {
 
 void find_surfaces(const World& world, Workspace& work) {
     const Generation& rays = work.current;
-    if (work.surfaces.pigment.size() < rays.rays.count) {
+    if (work.surfaces.finish.size() < rays.rays.count) {
         work.surfaces.resize(rays.rays.count);
         work.light = LightWork(rays.rays.count);
     }
@@ -122,7 +122,7 @@ void trace_generations(const Job& job, Workspace& work) {
     while (work.current.rays.count > 0) {
         find_hits(job.world, coherent, work);
         find_surfaces(job.world, work);
-        work.radiance.assign(work.surfaces.count, Vec3(0));
+        work.radiance.clear(work.surfaces.count);
         add_direct_light(job.world, work.surfaces, work.light, work.radiance);
         work.next.clear();
         for (std::size_t k = 0; k < work.surfaces.count; ++k) {

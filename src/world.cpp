@@ -41,14 +41,19 @@ PreparedSource prepare(const Source& s) {
 
 }  // namespace
 
-World::World(const Scene& given) : scene(given), facets(given) {
+World::World(const Scene& given) : scene(given), facets(given), blockers(make_blocker_tree(given)) {
     for (const Material& m : scene.materials) {
         finishes.push_back(prepare(m, scene.ambient));
         translucent |= m.opacity < 1;
     }
     for (const Texture& t : scene.textures) samplers.push_back(make_sampler(t));
-    for (const Light& light : scene.lights)
-        for (const Source& source : virtual_sources(light)) sources.push_back(prepare(source));
+    for (const Light& light : scene.lights) {
+        SourceGroup& group = lights.emplace_back();
+        for (const Source& source : virtual_sources(light)) {
+            group.sources.push_back(prepare(source));
+            group.box.extend(source.position);
+        }
+    }
     for (const Plane& plane : scene.planes) {
         const PlaneFrame frame = plane_frame(plane);
         planes.push_back({frame, frame.normal.dot(plane.point)});

@@ -3,6 +3,7 @@
 
 #include "facets.h"
 #include "sampler.h"
+#include "shaft.h"
 
 #include "penumbra/scene.h"
 
@@ -27,6 +28,12 @@ struct PreparedSource {
     double fade_distance = 1, fade_power = 2;
 };
 
+/// The virtual sources of one Light.
+struct SourceGroup {
+    std::vector<PreparedSource> sources = {};
+    Bounds box = {};  ///< of their positions
+};
+
 /// A point with normal . p = distance lies on the plane.
 struct PreparedPlane {
     PlaneFrame frame = {};
@@ -36,9 +43,10 @@ struct PreparedPlane {
 struct World {
     const Scene& scene;
     Facets facets;
+    BlockerTree blockers;
     std::vector<Finish> finishes = {};   ///< by material
     std::vector<Sampler> samplers = {};  ///< by texture
-    std::vector<PreparedSource> sources = {};
+    std::vector<SourceGroup> lights = {};
     std::vector<PreparedPlane> planes = {};
     bool translucent = false;  ///< any object lets light through
 

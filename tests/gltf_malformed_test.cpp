@@ -116,8 +116,20 @@ TEST_CASE("Malformed glTF, has values of the wrong kind") {
     CHECK(with("/accessors/0/componentType", 5124) ==
           "box.gltf#/accessors/0/componentType: is 5124, which glTF does not have");
     CHECK(without("/accessors/0", "count") == "box.gltf#/accessors/0: has no 'count'");
-    CHECK(with("/cameras", {{{"type", "perspective"}, {"perspective", {{"yfov", 0}}}}}) ==
+    CHECK(with("/cameras",
+               {{{"type", "perspective"}, {"perspective", {{"yfov", 0}, {"znear", 1}}}}}) ==
           "box.gltf#/cameras/0/perspective/yfov: is 0, less than 1e-05");
+}
+
+TEST_CASE("Malformed glTF, has cameras that see nothing") {
+    Gltf gltf = triangle();
+    gltf.root["nodes"][0]["camera"] = 0;
+    gltf.add("cameras", {{"type", "perspective"}});
+    CHECK(problem(gltf) == "box.gltf#/cameras/0: has no 'perspective'");
+    gltf.root["cameras"][0] = {
+        {"type", "orthographic"},
+        {"orthographic", {{"xmag", 1}, {"ymag", 0}, {"znear", 0}, {"zfar", 9}}}};
+    CHECK(problem(gltf) == "box.gltf#/cameras/0/orthographic/ymag: must not be 0");
 }
 
 TEST_CASE("Malformed glTF, has accessors that leave their buffers") {

@@ -1,13 +1,14 @@
 // Models by other people, and files made to hurt.
-#include "support.h"
 
-#include "penumbra/importers.h"
+#include "obj_files.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 using namespace penumbra;
+using test::area;
+using test::facets;
 
 namespace {
 
@@ -32,22 +33,6 @@ std::vector<Asset> manifest(const std::string& kind) {
     }
     finish();
     return result;
-}
-
-double area(const Scene& scene) {
-    double sum = 0;
-    for (const Mesh& mesh : scene.meshes)
-        for (const auto& t : mesh.triangles) {
-            const Vec3 a(mesh.positions[t[0]]), b(mesh.positions[t[1]]), c(mesh.positions[t[2]]);
-            sum += (b - a).cross(c - a).length() / 2;
-        }
-    return sum;
-}
-
-std::size_t facets(const Scene& scene) {
-    std::size_t sum = 0;
-    for (const Mesh& mesh : scene.meshes) sum += mesh.triangles.size();
-    return sum;
 }
 
 }  // namespace

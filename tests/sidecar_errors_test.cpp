@@ -86,6 +86,8 @@ TEST_CASE("A value out of range is named with the range") {
           "studio.toml:2:12: 'specular' in [material.a] must be 0 or more, not -1");
     CHECK(problem("[material.a]\nshininess = 1e300") ==
           "studio.toml:2:13: 'shininess' in [material.a] is too large: 1e+300");
+    CHECK(problem("[material.a]\nior = 1e-300") ==
+          "studio.toml:2:7: 'ior' in [material.a] is too near to the end of its range: 1e-300");
     CHECK(problem("[material.a]\ncolor = [0, -0.5, 0]") ==
           "studio.toml:2:9: 'color' in [material.a] must have channels of 0 or more, not -0.5");
     CHECK(problem("[camera]\nfov = 180") ==

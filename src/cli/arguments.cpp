@@ -72,6 +72,28 @@ class Reader {
         }
     }
 
+    // What depends on several options.
+    void finish() {
+        if (color || no_color) arguments.color = !no_color;
+        const bool compares = arguments.command == Command::compare;
+        if (!profile.empty())
+            arguments.limits = profile_limits(profile);
+        else if (compares)
+            arguments.limits = profile_limits("equivalent");
+        for (const auto& [metric, value] : overrides) arguments.limits.limits[metric] = value;
+        if (compares && arguments.inputs.size() != 2)
+            throw Error(
+                Failure::usage, "",
+                fmt::format("compare takes two pictures, not {} (see 'penumbra compare --help')",
+                            arguments.inputs.size()));
+        if (arguments.inputs.empty() && (arguments.each || !arguments.load.sidecar))
+            throw Error(
+                Failure::usage, "",
+                fmt::format("no input is given (see 'penumbra {} --help')", app->get_name()));
+        if (arguments.jobs > 1 && !arguments.each)
+            throw Error(Failure::usage, "--jobs", "needs --each");
+    }
+
     std::vector<std::string> option_names() const {
         std::vector<std::string> names;
         for (const CLI::Option* option : app->get_options())
@@ -85,6 +107,9 @@ class Reader {
     std::string group;
     std::map<const CLI::Option*, Apply> appliers;
     std::vector<std::unique_ptr<std::vector<std::string>>> values;
+    bool color = false, no_color = false;
+    std::string profile;
+    std::map<std::string, double> overrides;
 
     void value(const std::string& name, const std::string& type, const std::string& what,
                Apply apply) {
@@ -255,31 +280,6 @@ class Reader {
         flag("--color", color, "Colour messages even where no terminal is");
         flag("--no-color", no_color, "Do not colour messages (NO_COLOR)");
     }
-
-    bool color = false, no_color = false;
-    std::string profile;
-    std::map<std::string, double> overrides;
-
-  public:
-    // What depends on several options.
-    void finish() {
-        if (color || no_color) arguments.color = !no_color;
-        const bool compares = arguments.command == Command::compare;
-        if (!profile.empty())
-            arguments.limits = profile_limits(profile);
-        else if (compares)
-            arguments.limits = profile_limits("equivalent");
-        for (const auto& [metric, value] : overrides) arguments.limits.limits[metric] = value;
-        if (compares && arguments.inputs.size() != 2)
-            throw Error(Failure::usage, "",
-                        fmt::format("compare takes two pictures, not {}", arguments.inputs.size()));
-        if (arguments.inputs.empty() && (arguments.each || !arguments.load.sidecar))
-            throw Error(
-                Failure::usage, "",
-                fmt::format("no input is given (see 'penumbra {} --help')", app->get_name()));
-        if (arguments.jobs > 1 && !arguments.each)
-            throw Error(Failure::usage, "--jobs", "needs --each");
-    }
 };
 
 int threads_of_environment() {
@@ -359,9 +359,8 @@ Parsed parse(int argc, const char* const* argv) {
     arguments.threads = threads_of_environment();
     (*reader)->apply();
     (*reader)->finish();
-    std::vector<std::string> words = {"penumbra"};
-    words.insert(words.end(), argv + 1, argv + argc);
-    arguments.line = shell_command(words);
+    arguments.words = {"penumbra"};
+    arguments.words.insert(arguments.words.end(), argv + 1, argv + argc);
     return {std::move(arguments), ""};
 }
 

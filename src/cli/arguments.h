@@ -34,7 +34,7 @@ struct Arguments {
 
     bool json = false, quiet = false, verbose = false, strict = false;
     std::optional<bool> color = {};
-    std::string line = {};  ///< the whole command, quoted for a shell
+    std::vector<std::string> words = {};  ///< the whole command line, "penumbra" first
 };
 
 /// Either what to do, or a text (help, version) to print instead.

@@ -1,6 +1,7 @@
 #include "figures.h"
 #include "report_folder.h"
 #include "steps.h"
+#include "values.h"
 
 #include "penumbra/image.h"
 
@@ -16,8 +17,9 @@ int compare(const Context& context) {
     Case result;
     result.test_name = arguments.inputs[0].string();
     result.reference_name = arguments.inputs[1].string();
-    result.name = arguments.inputs[0].filename().string();
-    result.commands = {arguments.line};
+    result.name = fmt::format("{} vs {}", arguments.inputs[0].filename().string(),
+                              arguments.inputs[1].filename().string());
+    result.commands = {shell_command(arguments.words)};
     result.test = load_image(arguments.inputs[0]);
     result.reference = load_image(arguments.inputs[1]);
     const Stopwatch watch;

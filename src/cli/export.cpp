@@ -1,4 +1,5 @@
 #include "steps.h"
+#include "values.h"
 
 #include "penumbra/exporters.h"
 
@@ -20,7 +21,7 @@ int export_scene(const Context& context) {
     const NormalisedScene scene = normalise(std::move(imported.scene), imported.render);
     const Exported exported = write_pov(scene, imported.render, output,
                                         {.source = source_of(arguments, arguments.inputs),
-                                         .command = arguments.line,
+                                         .command = shell_command(arguments.words),
                                          .losses = imported.losses});
     report_losses(context, exported.losses);
     losses.insert(losses.end(), exported.losses.begin(), exported.losses.end());

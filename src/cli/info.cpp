@@ -1,3 +1,4 @@
+#include "interruption.h"
 #include "steps.h"
 
 #include "penumbra/exporters.h"
@@ -50,8 +51,10 @@ Losses export_losses(Scene scene, const RenderOptions& options) {
     const auto remove = [](const std::string* folder) {
         std::error_code ignored;
         fs::remove_all(*folder, ignored);
+        set_leftover({});
     };
     const std::unique_ptr<const std::string, decltype(remove)> guard(&name, remove);
+    set_leftover(name);
     const NormalisedScene normal = normalise(std::move(scene), options);
     return write_pov(normal, options, fs::path(name) / "scene.pov").losses;
 }
@@ -105,6 +108,10 @@ Json document(const Arguments& arguments, const Report& report) {
 
 // ---- text
 
+std::string counted(std::size_t count, const char* what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 std::string count_line(const char* what, std::size_t count, const std::string& names = "") {
     return fmt::format("{:<11}{}{}\n", what, count, names.empty() ? "" : "  " + names);
 }
@@ -151,14 +158,14 @@ std::string contents(const Report& report) {
     std::string text;
     for (const ModelInfo& model : report.imported.models)
         text += fmt::format("{} ({}{})\n", model.file, model.format,
-                            model.nodes > 0 ? fmt::format(", {} nodes", model.nodes) : "");
+                            model.nodes > 0 ? ", " + counted(model.nodes, "node") : "");
     if (!report.box.empty())
         text += fmt::format("{:<11}({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n",
                             "bounds", report.box.min.x, report.box.min.y, report.box.min.z,
                             report.box.max.x, report.box.max.y, report.box.max.z);
     text += count_line("facets", report.facets);
     text += count_line("meshes", scene.meshes.size(),
-                       fmt::format("in {} instances", scene.instances.size()));
+                       "in " + counted(scene.instances.size(), "instance"));
     text += count_line("spheres", scene.spheres.size());
     text += count_line("planes", scene.planes.size());
     text += count_line("materials", scene.materials.size(),

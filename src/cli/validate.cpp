@@ -1,6 +1,7 @@
 #include "figures.h"
 #include "report_folder.h"
 #include "steps.h"
+#include "values.h"
 
 #include "penumbra/exporters.h"
 #include "penumbra/image.h"
@@ -42,8 +43,21 @@ std::string in_folder(const Job& job, const std::string& file) {
 
 // The command that validates this job alone.
 std::string own_command(const Arguments& arguments, const Job& job) {
-    return arguments.each ? fmt::format("{}  # {}", arguments.line, job.inputs[0].string())
-                          : arguments.line;
+    if (!arguments.each) return shell_command(arguments.words);
+    std::vector<std::string> words;
+    const auto is_other = [&](const std::string& word) {
+        return word != job.inputs[0].string() &&
+               std::find(arguments.inputs.begin(), arguments.inputs.end(), fs::path(word)) !=
+                   arguments.inputs.end();
+    };
+    for (std::size_t i = 0; i < arguments.words.size(); ++i) {
+        const std::string& word = arguments.words[i];
+        if (word == "--jobs" || word == "--report") ++i;  // and its value
+        const bool of_all = word == "--each" || word.starts_with("--jobs") ||
+                            word.starts_with("--report") || is_other(word);
+        if (!of_all) words.push_back(word);
+    }
+    return shell_command(words);
 }
 
 void export_case(const Context& context, const Job& job, const fs::path& folder,
@@ -51,12 +65,12 @@ void export_case(const Context& context, const Job& job, const fs::path& folder,
     const Stopwatch watch;
     const Exported exported = write_pov(scene, options, folder / (std::string(stem) + ".pov"),
                                         {.source = source_of(context.arguments, job.inputs),
-                                         .command = context.arguments.line,
+                                         .command = own_command(context.arguments, job),
                                          .losses = result.losses});
     result.seconds["export"] = watch.seconds();
     result.losses.insert(result.losses.end(), exported.losses.begin(), exported.losses.end());
-    result.files["scene"] = in_folder(job, std::string(stem) + ".pov");
-    result.files["options"] = in_folder(job, std::string(stem) + ".ini");
+    result.files["pov"] = in_folder(job, std::string(stem) + ".pov");
+    result.files["ini"] = in_folder(job, std::string(stem) + ".ini");
 }
 
 void run_reference(const Context& context, const Job& job, const fs::path& folder,
@@ -76,7 +90,7 @@ void run_reference(const Context& context, const Job& job, const fs::path& folde
     result.reference = std::move(run.image);
     result.povray_log = std::move(run.log);
     save_image(folder / "povray.exr", result.reference);
-    result.files["povray"] = in_folder(job, "povray.exr");
+    result.files["reference"] = in_folder(job, "povray.exr");
 }
 
 // Fills `result` step by step, so that a failing step leaves what was found before it.
@@ -109,7 +123,7 @@ void run_case(const Context& context, const Job& job, const fs::path& report, Ca
     result.seconds["render"] = render_time.seconds();
     scene = {};
     save_image(folder / "ours.exr", result.test);
-    result.files["ours"] = in_folder(job, "ours.exr");
+    result.files["test"] = in_folder(job, "ours.exr");
 
     run_reference(context, job, folder, options, result);
     const Stopwatch compare_time;
@@ -122,19 +136,22 @@ void run_case(const Context& context, const Job& job, const fs::path& report, Ca
 
 Outcome outcome_of(const Context& context, const Job& job, const fs::path& report) {
     Outcome outcome;
+    const auto fail = [&](int status, const std::string& message) {
+        outcome.status = status;
+        outcome.failure = std::current_exception();
+        outcome.result.message = message;
+        outcome.result.comparison.verdict = Verdict::error;
+    };
     try {
         run_case(context, job, report, outcome.result);
         outcome.status = verdict_status(outcome.result.comparison.verdict);
-        return outcome;
     } catch (const Error& error) {
-        outcome.result.message = error.what();
-        outcome.status = exit_status(error.failure);
-        if (outcome.status == exit_usage) outcome.status = exit_input;
+        // With several scenes a setting that does not suit one of them is that scene's fault.
+        fail(error.failure == Failure::usage ? exit_input : exit_status(error.failure),
+             error.what());
     } catch (const std::exception& error) {
-        outcome.result.message = fmt::format("internal error: {}", error.what());
+        fail(exit_internal, fmt::format("internal error: {}", error.what()));
     }
-    outcome.failure = std::current_exception();
-    outcome.result.comparison.verdict = Verdict::error;
     return outcome;
 }
 
