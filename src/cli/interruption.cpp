@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -24,6 +25,9 @@ constexpr int exit_interrupted = 130;
 
 // A handler may do little more than write to a pipe; a thread at its other end does the rest.
 std::array<int, 2> ends = {-1, -1};
+
+// Set by whoever writes the program's last message.
+std::atomic_flag last_word = ATOMIC_FLAG_INIT;
 
 std::mutex leftover_mutex;
 std::filesystem::path leftover;
@@ -43,11 +47,12 @@ char next_byte() {
     return byte;
 }
 
-void watch(std::stop_source source) {
-    if (next_byte() != 's') return;
-    source.request_stop();
-    pollfd end = {ends[0], POLLIN, 0};
-    if (::poll(&end, 1, patience) > 0 && next_byte() == 'e') return;  // else impatience
+// Ends the process while its work still goes on.
+[[noreturn]] void end_now() {
+    if (last_word.test_and_set()) {
+        ::poll(nullptr, 0, patience);  // the program is about to end by itself
+        ::_exit(exit_interrupted);
+    }
     {
         const std::lock_guard lock(leftover_mutex);
         std::error_code ignored;
@@ -56,6 +61,14 @@ void watch(std::stop_source source) {
     constexpr char message[] = "penumbra: error: interrupted\n";
     [[maybe_unused]] const auto ignored = ::write(STDERR_FILENO, message, sizeof message - 1);
     ::_exit(exit_interrupted);
+}
+
+void watch(std::stop_source source) {
+    if (next_byte() != 's') return;
+    source.request_stop();
+    pollfd end = {ends[0], POLLIN, 0};
+    if (::poll(&end, 1, patience) > 0 && next_byte() == 'e') return;  // else impatience
+    end_now();
 }
 
 void handle(void (*handler)(int)) {
@@ -75,6 +88,11 @@ void handle(void (*handler)(int)) {
 void set_leftover(const std::filesystem::path& folder) {
     const std::lock_guard lock(leftover_mutex);
     leftover = folder;
+}
+
+void take_last_word() {
+    if (!last_word.test_and_set()) return;
+    for (;;) ::pause();
 }
 
 Interruption::Interruption() {

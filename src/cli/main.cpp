@@ -33,22 +33,27 @@ int run(const Arguments& arguments, Console& console) {
     return exit_internal;
 }
 
-// Runs `work` and turns what it throws into a line and a status.
-template <class Work>
-int guarded(Console& console, Work work) {
+struct Ending {
+    int status = exit_success;
+    std::string message = {};
+};
+
+// Runs `work` and turns what it throws into a message and a status.
+template <class Work> Ending ending_of(Work work) {
+    const auto internal = [](const std::string& what) {
+        return Ending{exit_internal, "internal error: " + what};
+    };
     try {
-        return work();
+        return {work()};
     } catch (const Error& error) {
-        console.error(error.what());
-        return exit_status(error.failure);
+        return {exit_status(error.failure), std::string("error: ") + error.what()};
     } catch (const std::bad_alloc&) {
-        console.internal_error("not enough memory");
+        return internal("not enough memory");
     } catch (const std::exception& error) {
-        console.internal_error(error.what());
+        return internal(error.what());
     } catch (...) {
-        console.internal_error("unknown exception");
+        return internal("unknown exception");
     }
-    return exit_internal;
 }
 
 int program(int argc, const char* const* argv) {
