@@ -2,6 +2,7 @@
 
 #include "file.h"
 #include "image_module.h"
+#include "png_codec.h"
 
 #include "penumbra/error.h"
 
@@ -33,8 +34,10 @@ const ImageModule& module_for(Failure failure, const std::string& place) {
 }
 
 std::vector<std::byte> encode(const Raster& raster, const fs::path& file, bool srgb) {
-    const ImageModule& module = module_for(Failure::output, file.string());
-    Encoded encoded = module.encode(raster, lower_extension(file), srgb);
+    const bool png = lower_extension(file) == ".png" && raster.depth != Depth::f32;
+    Encoded encoded = png ? encode_png(raster, srgb)
+                          : module_for(Failure::output, file.string())
+                                .encode(raster, lower_extension(file), srgb);
     if (!encoded.problem.empty())
         throw Error(Failure::output, file.string(), "cannot be written (" + encoded.problem + ")");
     return std::move(encoded.file);
@@ -124,8 +127,9 @@ float linear_to_srgb(float linear) {
 }
 
 Raster decode_image(std::span<const std::byte> file, const std::string& name) {
-    const ImageModule& module = module_for(Failure::input, name);
-    Decoded decoded = module.decode(file, lower_extension(name));
+    Decoded decoded = is_png(file)
+                          ? decode_png(file)
+                          : module_for(Failure::input, name).decode(file, lower_extension(name));
     if (!decoded.problem.empty())
         throw Error(Failure::input, name, "cannot be read as an image (" + decoded.problem + ")");
     return std::move(decoded.raster);

@@ -16,6 +16,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* module_file = "penumbra-imageio.so";
 
+std::jthread loader;
+
 // Adds the places around `binary`, the file that holds our code: beside it (a build tree, a
 // plugin's folder) and where `cmake --install` puts the module, wherever the whole installation was
 // moved.
@@ -78,13 +80,21 @@ const ImageModule& image_module() {
 }
 
 void preload_image_module() {
-    // Joined at exit, so that no library is unloaded under its feet.
-    static const std::jthread loader([] {
-        try {
-            image_module();
-        } catch (...) {  // whoever needs the module will try again and say so
-        }
+    static std::once_flag once;
+    std::call_once(once, [] {
+        loader = std::jthread([] {
+            try {
+                image_module();
+            } catch (...) {  // whoever needs the module will try again and say so
+            }
+        });
     });
+}
+
+void wait_for_image_module() {
+    static std::mutex one_at_a_time;
+    const std::lock_guard lock(one_at_a_time);
+    if (loader.joinable()) loader.join();
 }
 
 }  // namespace penumbra

@@ -84,6 +84,30 @@ void add_diffuse(const double* __restrict pigment, double color, const double* _
         radiance[i] += color * (pigment[i] * (diffuse[i] * cosine[i] * arriving[i]));
 }
 
+// All sources of a light at once, for matte points that nothing can shade: nothing is stored
+// between the steps. The same sums in the same order as source by source.
+PENUMBRA_VECTORISED
+void add_open_matte(const PreparedSource* sources, std::size_t source_count, Lanes position,
+                    Lanes normal, Lanes pigment, const double* __restrict diffuse,
+                    std::size_t count, double* __restrict red, double* __restrict green,
+                    double* __restrict blue) {
+    for (std::size_t s = 0; s < source_count; ++s) {
+        const double sx = sources[s].position.x, sy = sources[s].position.y,
+                     sz = sources[s].position.z;
+        const double r = sources[s].color.x, g = sources[s].color.y, b = sources[s].color.z;
+        for (std::size_t i = 0; i < count; ++i) {
+            const double x = sx - position.x[i], y = sy - position.y[i], z = sz - position.z[i];
+            const double scale = 1 / std::sqrt(x * x + y * y + z * z);
+            const double cosine =
+                normal.x[i] * (x * scale) + normal.y[i] * (y * scale) + normal.z[i] * (z * scale);
+            const double amount = diffuse[i] * (cosine < least_cosine ? 0.0 : cosine);
+            red[i] += r * (pigment.x[i] * amount);
+            green[i] += g * (pigment.y[i] * amount);
+            blue[i] += b * (pigment.z[i] * amount);
+        }
+    }
+}
+
 // ---- one source --------------------------------------------------------------------------------
 
 void aim(const PreparedSource& source, const Surfaces& surfaces, LightWork& work) {
@@ -254,11 +278,12 @@ Bounds bounds_of(const Surfaces& surfaces, std::size_t first, std::size_t last) 
 }
 
 // Marks the points that nothing can shade from this light: first all of them, then block by block.
-void find_open(const World& world, const SourceGroup& light, const Surfaces& surfaces,
+// Returns whether that is all of them.
+bool find_open(const World& world, const SourceGroup& light, const Surfaces& surfaces,
                LightWork& work) {
     if (all_open(world, light, bounds_of(surfaces, 0, surfaces.count))) {
         std::fill_n(work.open.begin(), surfaces.count, 1);
-        return;
+        return true;
     }
     for (std::size_t first = 0; first < surfaces.count; first += block_size) {
         const std::size_t last = std::min(first + block_size, surfaces.count);
@@ -266,6 +291,20 @@ void find_open(const World& world, const SourceGroup& light, const Surfaces& sur
         std::fill(work.open.begin() + std::ptrdiff_t(first),
                   work.open.begin() + std::ptrdiff_t(last), open);
     }
+    return false;
+}
+
+// Point sources that neither fade nor are too weak to count.
+bool plain(const SourceGroup& light) {
+    const PreparedSource& one = light.sources.front();
+    return one.type == Light::Type::point && !one.fades &&
+           std::max({one.color.x, one.color.y, one.color.z}) >= least_light;
+}
+
+bool matte(const Surfaces& surfaces) {
+    return std::all_of(surfaces.specular.begin(),
+                       surfaces.specular.begin() + std::ptrdiff_t(surfaces.count),
+                       [](double specular) { return specular == 0; });
 }
 
 }  // namespace
@@ -291,8 +330,15 @@ void add_direct_light(const World& world, const Surfaces& surfaces, LightWork& w
         const Vec3 own = (surfaces.pigment[i] * finish.ambient + finish.emission) * finish.opacity;
         for (std::size_t c = 0; c < 3; ++c) radiance.axis[c][i] += own[int(c)];
     }
+    const bool all_matte = matte(surfaces);
     for (const SourceGroup& light : world.lights) {
-        find_open(world, light, surfaces, work);
+        if (find_open(world, light, surfaces, work) && all_matte && plain(light)) {
+            auto& [red, green, blue] = radiance.axis;
+            add_open_matte(light.sources.data(), light.sources.size(), Lanes(surfaces.position),
+                           Lanes(surfaces.normal), Lanes(surfaces.pigment), surfaces.diffuse.data(),
+                           surfaces.count, red.data(), green.data(), blue.data());
+            continue;
+        }
         for (const PreparedSource& source : light.sources)
             add_source(world, source, surfaces, work, radiance);
     }

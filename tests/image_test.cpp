@@ -214,10 +214,10 @@ TEST_CASE("a picture that cannot be decoded is named with the reason") {
     const Bytes cut(file.begin(), file.end() - 20);
     CHECK(message(cut) == "wood.png: cannot be read as an image (the file is cut short)");
     file[file.size() - 18] ^= std::byte{1};
-    CHECK(message(file) == "wood.png: cannot be read as an image (the IDAT chunk is damaged)");
+    CHECK(message(file) == "wood.png: cannot be read as an image (IDAT: incorrect data check)");
     CHECK(message(png({60000, 60000, 8, 0, {}, {}})) ==
-          "wood.png: cannot be read as an image (it has 60000 x 60000 pixels of 1 channels, more "
-          "than is supported)");
+          "wood.png: cannot be read as an image (it has 60000 x 60000 pixels, more than "
+          "is supported)");
 }
 
 TEST_CASE("every cut of a file is either decoded or refused") {
@@ -361,9 +361,16 @@ TEST_CASE("writing replaces a file as a whole and keeps a link to it") {
     CHECK((fs::status(folder / "real").permissions() & fs::perms::owner_read) != fs::perms::none);
 }
 
+TEST_CASE("the image module may be loaded ahead") {
+    wait_for_image_module();
+    preload_image_module();
+    preload_image_module();
+    wait_for_image_module();
+    wait_for_image_module();
+    CHECK_FALSE(encode_png(Image(1, 1)).empty());
+}
+
 TEST_CASE("pictures may be decoded in several threads at once") {
-    preload_image_module();
-    preload_image_module();
     const Bytes file = png({2, 1, 8, 6, {}, bytes({0, 200, 100, 50, 0, 200, 100, 50, 3})});
     std::array<Values, 4> seen;
     {

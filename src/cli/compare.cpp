@@ -11,7 +11,6 @@ namespace penumbra::cli {
 
 int compare(const Context& context) {
     const Arguments& arguments = context.arguments;
-    preload_image_module();
     if (arguments.report) check_report(*arguments.report);
 
     Case result;

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <memory>
 #include <set>
 #include <variant>
 
@@ -43,18 +42,17 @@ struct Report {
     Totals totals = {};
 };
 
+struct Finally {
+    ~Finally() { remove_leftover(); }
+};
+
 // Only an export tells what POV-Ray cannot say; this one is thrown away.
 Losses export_losses(Scene scene, const RenderOptions& options) {
     std::string name = (fs::temp_directory_path() / "penumbra-XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr)
         throw Error(Failure::output, name, "no temporary folder can be made");
-    const auto remove = [](const std::string* folder) {
-        std::error_code ignored;
-        fs::remove_all(*folder, ignored);
-        set_leftover({});
-    };
-    const std::unique_ptr<const std::string, decltype(remove)> guard(&name, remove);
     set_leftover(name);
+    const Finally removal;
     const NormalisedScene normal = normalise(std::move(scene), options);
     return write_pov(normal, options, fs::path(name) / "scene.pov").losses;
 }

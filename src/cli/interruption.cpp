@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -25,9 +24,6 @@ constexpr int exit_interrupted = 130;
 
 // A handler may do little more than write to a pipe; a thread at its other end does the rest.
 std::array<int, 2> ends = {-1, -1};
-
-// Set by whoever writes the program's last message.
-std::atomic_flag last_word = ATOMIC_FLAG_INIT;
 
 std::mutex leftover_mutex;
 std::filesystem::path leftover;
@@ -49,15 +45,9 @@ char next_byte() {
 
 // Ends the process while its work still goes on.
 [[noreturn]] void end_now() {
-    if (last_word.test_and_set()) {
-        ::poll(nullptr, 0, patience);  // the program is about to end by itself
-        ::_exit(exit_interrupted);
-    }
-    {
-        const std::lock_guard lock(leftover_mutex);
-        std::error_code ignored;
-        if (!leftover.empty()) std::filesystem::remove_all(leftover, ignored);
-    }
+    const std::lock_guard lock(leftover_mutex);  // for good: nobody may fill it again
+    std::error_code error;
+    if (!leftover.empty()) std::filesystem::remove_all(leftover, error);
     constexpr char message[] = "penumbra: error: interrupted\n";
     [[maybe_unused]] const auto ignored = ::write(STDERR_FILENO, message, sizeof message - 1);
     ::_exit(exit_interrupted);
@@ -90,9 +80,11 @@ void set_leftover(const std::filesystem::path& folder) {
     leftover = folder;
 }
 
-void take_last_word() {
-    if (!last_word.test_and_set()) return;
-    for (;;) ::pause();
+void remove_leftover() {
+    const std::lock_guard lock(leftover_mutex);
+    std::error_code ignored;
+    if (!leftover.empty()) std::filesystem::remove_all(leftover, ignored);
+    leftover.clear();
 }
 
 Interruption::Interruption() {

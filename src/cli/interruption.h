@@ -7,12 +7,10 @@
 
 namespace penumbra::cli {
 
-/// The folder to remove when the process is ended before its work heeds the request; "": none.
+/// Names the folder to remove when the process is ended before its work heeds the request.
 void set_leftover(const std::filesystem::path& folder);
-
-/// Call before the message that ends the program: an impatient interruption may be writing its own,
-/// and then this waits for the end of the process.
-void take_last_word();
+/// Removes it now.
+void remove_leftover();
 
 /// Turns SIGINT, SIGTERM and SIGHUP into a stop request. Work that does not heed the request in
 /// time is ended together with the process: exit status 130 within a second either way.

@@ -2,6 +2,8 @@
 #include "commands.h"
 #include "interruption.h"
 
+#include "penumbra/image.h"
+
 #include <exception>
 #include <new>
 
@@ -33,27 +35,22 @@ int run(const Arguments& arguments, Console& console) {
     return exit_internal;
 }
 
-struct Ending {
-    int status = exit_success;
-    std::string message = {};
-};
-
-// Runs `work` and turns what it throws into a message and a status.
-template <class Work> Ending ending_of(Work work) {
-    const auto internal = [](const std::string& what) {
-        return Ending{exit_internal, "internal error: " + what};
-    };
+// Runs `work` and turns what it throws into a line and a status.
+template <class Work>
+int guarded(Console& console, Work work) {
     try {
-        return {work()};
+        return work();
     } catch (const Error& error) {
-        return {exit_status(error.failure), std::string("error: ") + error.what()};
+        console.error(error.what());
+        return exit_status(error.failure);
     } catch (const std::bad_alloc&) {
-        return internal("not enough memory");
+        console.internal_error("not enough memory");
     } catch (const std::exception& error) {
-        return internal(error.what());
+        console.internal_error(error.what());
     } catch (...) {
-        return internal("unknown exception");
+        console.internal_error("unknown exception");
     }
+    return exit_internal;
 }
 
 int program(int argc, const char* const* argv) {
@@ -67,7 +64,9 @@ int program(int argc, const char* const* argv) {
     if (!parsed.arguments) return status;
     const Arguments& arguments = *parsed.arguments;
     Console console({arguments.quiet, arguments.verbose, arguments.color});
-    return guarded(console, [&] { return run(arguments, console); });
+    const int ending = guarded(console, [&] { return run(arguments, console); });
+    wait_for_image_module();
+    return ending;
 }
 
 }  // namespace

@@ -25,10 +25,10 @@ int render(const Context& context) {
     const Arguments& arguments = context.arguments;
     const std::filesystem::path output = arguments.output.value_or(stem_of(arguments) + ".png");
     check_picture(output, arguments.bits);
-    preload_image_module();
 
     const Stopwatch import_time;
     Imported imported = load(arguments, arguments.inputs);
+    if (output.extension() != ".png") preload_image_module();  // while the picture is rendered
     report_losses(context, imported.losses);
     const RenderOptions options = imported.render;
     const NormalisedScene scene = normalise(std::move(imported.scene), options);

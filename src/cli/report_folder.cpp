@@ -51,11 +51,7 @@ ReportFolder::ReportFolder(const fs::path& final_name) : target(plain(final_name
     if (error) fail(final_name, error);
 }
 
-ReportFolder::~ReportFolder() {
-    std::error_code ignored;
-    fs::remove_all(staging, ignored);
-    set_leftover({});
-}
+ReportFolder::~ReportFolder() { remove_leftover(); }
 
 void ReportFolder::finish() {
     std::error_code error;

@@ -101,6 +101,7 @@ void run_case(const Context& context, const Job& job, const fs::path& report, Ca
 
     const Stopwatch import_time;
     Imported imported = load(arguments, job.inputs);
+    preload_image_module();  // while the picture is rendered
     result.losses = imported.losses;
     report_losses(context, imported.losses);
     const RenderOptions options = imported.render;
@@ -232,7 +233,6 @@ int validate(const Context& context) {
     const std::string name = arguments.each ? "penumbra" : stem_of(arguments);
     const fs::path report = arguments.report.value_or(name + "-report");
     check_report(report);
-    preload_image_module();
     context.console.detail(povray_version(arguments.povray));
 
     ReportFolder folder(report);

@@ -1,6 +1,6 @@
 // Pictures: linear float images, textures in their own bit depth, and their files.
 //
-// Every file format goes through OpenImageIO, which lives in a module that is loaded when the
+// Every format but PNG goes through OpenImageIO, which lives in a module that is loaded when the
 // first function of this header that touches a file is called (it costs 0.3 s to start).
 #pragma once
 
@@ -74,7 +74,12 @@ void save_raster(const std::filesystem::path& file, const Raster& raster);
 /// `image` as an 8-bit sRGB PNG in memory, for embedding in a report.
 std::vector<std::byte> encode_png(const Image& image);
 
-/// Begins to load the image module in the background, so that a later call need not wait.
+/// Begins to load the image module in the background, so that a later call need not wait. A program
+/// that does so must not end before wait_for_image_module() has returned.
 void preload_image_module();
+
+/// Waits until what preload_image_module() began is done, if it was called. Ending the process
+/// earlier would run the destructors of libraries whose constructors are still at work.
+void wait_for_image_module();
 
 }  // namespace penumbra
