@@ -81,6 +81,9 @@ TEST_CASE("what is lost is a warning, and with --strict an error") {
     CHECK(refused.err.find("penumbra: error: 1 thing cannot be carried over and --strict is "
                            "given; the first is a.mtl:3: ") != std::string::npos);
     CHECK_FALSE(fs::exists(folder / "a.png"));
+    // It ends while the image module is still being loaded for the .exr.
+    strict.insert(strict.end(), {"-o", "a.exr"});
+    for (int i = 0; i < 5; ++i) CHECK(run(folder.path, strict).status == 3);
 }
 
 TEST_CASE("messages are coloured on request only, as nobody's terminal is there") {
