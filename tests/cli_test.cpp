@@ -5,7 +5,7 @@
 
 using namespace test;
 
-TEST_CASE("--version answers without loading OpenImageIO") {
+TEST_CASE("the version is told without loading OpenImageIO") {
     const TempDir folder;
     const Ended ended = run(folder.path, {"--version"}, {{"LD_DEBUG", "files"}});
     CHECK(ended.status == 0);
