@@ -6,7 +6,7 @@ configure_package_config_file(cmake/penumbraConfig.cmake.in penumbraConfig.cmake
 write_basic_package_version_file(penumbraConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 
 install(TARGETS penumbra EXPORT penumbraTargets FILE_SET HEADERS)
-install(TARGETS penumbra_imageio LIBRARY DESTINATION ${module_dir})
+install(TARGETS penumbra_imageio penumbra_draco LIBRARY DESTINATION ${module_dir})
 install(EXPORT penumbraTargets NAMESPACE penumbra:: DESTINATION ${package_dir})
 install(FILES ${PROJECT_BINARY_DIR}/penumbraConfig.cmake
     ${PROJECT_BINARY_DIR}/penumbraConfigVersion.cmake cmake/FindGLU.cmake

@@ -44,6 +44,7 @@ struct Examiner {
         require(m.opacity >= 0 && m.opacity <= 1, who + " has an opacity outside [0, 1]");
         require(m.ior > 0 && finite(m.ior),
                 who + " has an index of refraction that is not positive");
+        maps(m, who);
         if (const auto* map = std::get_if<ImageMap>(&m.pattern)) {
             require(map->texture < scene.textures.size(), who + " refers to a missing texture");
             require(map->size > 0 && finite(map->size),
@@ -59,11 +60,37 @@ struct Examiner {
         }
     }
 
+    void map(const ImageMap& map, const std::string& who, const char* what) {
+        require(map.texture < scene.textures.size(),
+                fmt::format("{} refers to a missing texture for its {}", who, what));
+        const auto& t = map.transform;
+        require(std::all_of(t.begin(), t.end(), finite) && t[0] * t[4] - t[1] * t[3] != 0,
+                fmt::format("{} lays its {} flat", who, what));
+    }
+
+    void maps(const Material& m, const std::string& who) {
+        if (m.emission_map) map(*m.emission_map, who, "emission");
+        if (m.coverage) map(m.coverage->map, who, "coverage");
+        if (m.normal_map) map(m.normal_map->map, who, "normal map");
+        if (m.gloss) {
+            require(!m.gloss->lobes.empty() && m.gloss->lobes.size() <= 16,
+                    who + " has a gloss of no lobes or of more than 16");
+            if (m.gloss->color.texture != no_index) map(m.gloss->color, who, "gloss");
+            if (m.gloss->level.texture != no_index) map(m.gloss->level, who, "gloss level");
+        }
+        require(m.opacity == 1 || (!m.emission_map && !m.gloss),
+                who + " is translucent and has an emission map or a gloss, which need it opaque");
+        require(m.transmission >= 0 && m.transmission <= 1,
+                who + " has a transmission outside [0, 1]");
+        require(!m.absorption || (m.absorption->distance > 0 && finite(m.absorption->distance)),
+                who + " has an absorption distance that is not positive");
+    }
+
     void mesh(const Mesh& m) {
         const std::string who = fmt::format("mesh '{}'", m.name);
         const std::size_t count = m.positions.size();
         const auto fits = [&](const auto& v) { return v.empty() || v.size() == count; };
-        require(fits(m.normals) && fits(m.texcoords) && fits(m.colors),
+        require(fits(m.normals) && fits(m.texcoords) && fits(m.colors) && fits(m.tangents),
                 who + " has per-vertex data of unequal lengths");
         require(std::all_of(m.positions.begin(), m.positions.end(), finite_vector<Vec3f>),
                 who + " has a position that is not finite");
@@ -132,6 +159,8 @@ std::vector<std::string> defects(const Scene& scene) {
     }
     for (const Light& l : scene.lights) examine.light(l);
     for (const Camera& c : scene.cameras) examine.camera(c);
+    examine.require(!scene.sky || scene.sky->texture < scene.textures.size(),
+                    "the sky refers to a missing texture");
     examine.require(scene.camera < scene.cameras.size(), "the scene has no camera");
     return std::move(examine.found);
 }

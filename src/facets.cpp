@@ -140,7 +140,7 @@ Facets::Facets(const Scene& scene) : scene_(scene), device_(std::make_unique<Dev
                              .to_mesh = instance.transform.inverse(),
                              .identity = instance.transform == Matrix(),
                              .smooth = material.smooth && !mesh.normals.empty(),
-                             .opaque = material.opacity >= 1};
+                             .opaque = opaque(material)};
         translucent_ |= !placed.opaque;
         instanced_ |= uses[instance.mesh] > 1;
         RTCGeometry geometry =

@@ -84,6 +84,12 @@ void add_diffuse(const double* __restrict pigment, double color, const double* _
         radiance[i] += color * (pigment[i] * (diffuse[i] * cosine[i] * arriving[i]));
 }
 
+PENUMBRA_VECTORISED
+void multiply(const double* __restrict a, const double* __restrict b, std::size_t count,
+              double* __restrict out) {
+    for (std::size_t i = 0; i < count; ++i) out[i] = a[i] * b[i];
+}
+
 // All sources of a light at once, for matte points that nothing can shade: nothing is stored
 // between the steps. The same sums in the same order as source by source.
 PENUMBRA_VECTORISED
@@ -158,25 +164,46 @@ bool gather_lit(const PreparedSource& source, const Surfaces& surfaces, LightWor
             continue;
         }
         any = true;
-        if (work.open[i] == 0 && (surfaces.diffuse[i] > 0 || surfaces.specular[i] > 0))
+        if (work.open[i] == 0 && (surfaces.diffuse[i] > 0 || surfaces.finish[i]->shines))
             work.lit.push_back(i);
     }
     return any;
 }
 
-// What translucent surfaces leave of the light along a shadow ray: a factor for each crossing,
-// except those within shadow_margin of the one before.
-double filtered(const World& world, const Vec3& origin, const Vec3& toward, double distance) {
-    double light = 1, from = shadow_margin;
-    while (light > 0) {
+// What translucent surfaces leave of the light along the shadow ray from a surface point: a factor
+// for each crossing, except those within shadow_margin of the one before.
+Vec3 filtered(const World& world, const Surfaces& surfaces, std::size_t slot, const Vec3& toward,
+              double distance) {
+    const Vec3 origin = surfaces.position[slot];
+    Vec3 light(1);
+    Interiors inside = *surfaces.inside[slot];
+    double from = 0;
+    while (light != Vec3(0)) {
         Hit hit = {.t = distance - shadow_margin};
-        const bool shape = translucent_shape(world, origin, toward, from, hit);
-        const bool facet = world.facets.translucent(origin, toward, from, hit.t, hit);
+        const double nearest = from + shadow_margin;
+        const bool shape = translucent_shape(world, origin, toward, nearest, hit);
+        const bool facet = world.facets.translucent(origin, toward, nearest, hit.t, hit);
         if (!shape && !facet) break;
-        light *= 1 - world.finish_of(hit.object).opacity;
-        from = hit.t + shadow_margin;
+        light *= light_through(world, origin, toward, hit);
+        const Finish& finish = world.finish_of(hit.object);
+        if (!inside.toggle(hit.object) && finish.absorbs)
+            for (int c = 0; c < 3; ++c)
+                light[c] *= std::exp(-finish.absorption[c] * (hit.t - from));
+        from = hit.t;
     }
     return light;
+}
+
+// Takes from the light of every point that gets some what translucent surfaces keep of it.
+void filter_light(const World& world, const Surfaces& surfaces, LightWork& work) {
+    for (const std::size_t i : work.lit) {
+        if (work.arriving[i] == 0) continue;
+        const Vec3 light = filtered(world, surfaces, i, work.toward[i], work.distance[i]);
+        if (light == Vec3(0))
+            work.arriving[i] = 0;
+        else
+            work.filter.set(i, light);
+    }
 }
 
 void cast_shadows(const World& world, const Surfaces& surfaces, LightWork& work) {
@@ -199,29 +226,37 @@ void cast_shadows(const World& world, const Surfaces& surfaces, LightWork& work)
     world.facets.block(rays, visible);
     for (std::size_t k = 0; k < rays.count; ++k) {
         const std::size_t i = work.lit[k];
-        if (visible[k] == 0)
-            work.arriving[i] = 0;
-        else if (world.translucent)
-            work.arriving[i] *=
-                filtered(world, surfaces.position[i], work.toward[i], work.distance[i]);
+        if (visible[k] == 0) work.arriving[i] = 0;
     }
 }
 
-void add_highlights(const PreparedSource& source, const Surfaces& surfaces, LightWork& work,
-                    Vectors& radiance) {
-    // The cosine of incidence has served; its array takes that of the mirrored eye ray.
+// M K_S (R.V)^N of the lobes that the surface point shows; `mirrored` is R.V.
+double highlight(const Finish& finish, const LobeMix& mix, double mirrored) {
+    const auto lobe = [&](std::size_t i) {
+        const PreparedLobe& l = finish.lobes[i];
+        if (l.specular == 0 || mirrored < l.highlight_end) return 0.0;
+        return l.specular * std::pow(mirrored, l.shininess);
+    };
+    if (mix.share == 0) return lobe(mix.first);
+    return lobe(mix.first) * (1 - mix.share) + lobe(mix.first + 1) * mix.share;
+}
+
+void add_highlights(const World& world, const PreparedSource& source, const Surfaces& surfaces,
+                    LightWork& work, Vectors& radiance) {
+    // The distance has served; its array takes the cosine of the mirrored eye ray.
     std::vector<double>& mirrored_cosine = work.distance;
     dot_products(Lanes(surfaces.mirrored), Lanes(work.toward), surfaces.count,
                  mirrored_cosine.data());
     for (std::size_t i = 0; i < surfaces.count; ++i) {
         const double k = mirrored_cosine[i];
-        if (k <= 0 || work.arriving[i] == 0 || surfaces.specular[i] == 0) continue;
         const Finish& finish = *surfaces.finish[i];
-        if (k < finish.highlight_end) continue;
-        const double amount = finish.specular * std::pow(k, finish.shininess) * work.arriving[i];
-        Vec3 light = source.color * amount;
+        if (k <= 0 || work.arriving[i] == 0 || !finish.shines) continue;
+        const double amount = highlight(finish, surfaces.lobes[i], k);
+        if (amount == 0) continue;
+        Vec3 light = source.color * (amount * work.arriving[i] * surfaces.coverage[i]);
+        if (world.translucent) light *= work.filter[i];
         if (finish.metallic > 0)
-            light *= metallic_tint(finish.metallic, work.cosine[i], surfaces.pigment[i]);
+            light *= metallic_tint(finish.metallic, work.cosine[i], surfaces.tint[i]);
         for (std::size_t c = 0; c < 3; ++c) radiance.axis[c][i] += light[int(c)];
     }
 }
@@ -232,11 +267,20 @@ void add_source(const World& world, const PreparedSource& source, const Surfaces
     weigh(source, surfaces, work);
     if (!gather_lit(source, surfaces, work)) return;
     cast_shadows(world, surfaces, work);
-    for (std::size_t c = 0; c < 3; ++c)
-        add_diffuse(surfaces.pigment.axis[c].data(), source.color[int(c)], work.arriving.data(),
-                    work.cosine.data(), surfaces.diffuse.data(), surfaces.count,
-                    radiance.axis[c].data());
-    add_highlights(source, surfaces, work, radiance);
+    if (world.translucent) {
+        work.filter.fill(surfaces.count, 1);
+        filter_light(world, surfaces, work);
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double* pigment = surfaces.pigment.axis[c].data();
+        if (world.translucent) {
+            multiply(pigment, work.filter.axis[c].data(), surfaces.count, work.filtered.data());
+            pigment = work.filtered.data();
+        }
+        add_diffuse(pigment, source.color[int(c)], work.arriving.data(), work.cosine.data(),
+                    surfaces.diffuse.data(), surfaces.count, radiance.axis[c].data());
+    }
+    add_highlights(world, source, surfaces, work, radiance);
 }
 
 // ---- one light ---------------------------------------------------------------------------------
@@ -302,16 +346,16 @@ bool plain(const SourceGroup& light) {
 }
 
 bool matte(const Surfaces& surfaces) {
-    return std::all_of(surfaces.specular.begin(),
-                       surfaces.specular.begin() + std::ptrdiff_t(surfaces.count),
-                       [](double specular) { return specular == 0; });
+    return std::none_of(surfaces.finish.begin(),
+                        surfaces.finish.begin() + std::ptrdiff_t(surfaces.count),
+                        [](const Finish* finish) { return finish->shines; });
 }
 
 }  // namespace
 
 LightWork::LightWork(std::size_t capacity)
-    : toward(capacity), distance(capacity), cosine(capacity), arriving(capacity), open(capacity),
-      shadows(capacity), visible(capacity) {
+    : toward(capacity), distance(capacity), cosine(capacity), arriving(capacity), filter(capacity),
+      filtered(capacity), open(capacity), shadows(capacity), visible(capacity) {
     lit.reserve(capacity);
 }
 
@@ -325,11 +369,9 @@ Vec3 metallic_tint(double metallic, double cosine, const Vec3& pigment) {
 void add_direct_light(const World& world, const Surfaces& surfaces, LightWork& work,
                       Vectors& radiance) {
     if (surfaces.count == 0) return;
-    for (std::size_t i = 0; i < surfaces.count; ++i) {
-        const Finish& finish = *surfaces.finish[i];
-        const Vec3 own = (surfaces.pigment[i] * finish.ambient + finish.emission) * finish.opacity;
-        for (std::size_t c = 0; c < 3; ++c) radiance.axis[c][i] += own[int(c)];
-    }
+    for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t i = 0; i < surfaces.count; ++i)
+            radiance.axis[c][i] += surfaces.own.axis[c][i];
     const bool all_matte = matte(surfaces);
     for (const SourceGroup& light : world.lights) {
         if (find_open(world, light, surfaces, work) && all_matte && plain(light)) {

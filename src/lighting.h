@@ -10,8 +10,10 @@ struct LightWork {
     Vectors toward;                        ///< unit, to the source
     std::vector<double> distance, cosine;  ///< to the source; of the angle of incidence
     std::vector<double> arriving;          ///< share of the source's light: f_a, spot, shadow
-    std::vector<unsigned char> open;       ///< nothing can stand between the point and the light
-    std::vector<std::size_t> lit;          ///< surface points that need a shadow ray
+    Vectors filter;                   ///< what translucent surfaces leave of it, in such scenes
+    std::vector<double> filtered;     ///< one channel of pigment times that
+    std::vector<unsigned char> open;  ///< nothing can stand between the point and the light
+    std::vector<std::size_t> lit;     ///< surface points that need a shadow ray
     ShadowRays shadows;
     std::vector<unsigned char> visible;
 

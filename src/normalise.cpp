@@ -1,5 +1,7 @@
 #include "penumbra/scene.h"
 
+#include <half.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -62,6 +64,7 @@ void move_and_scale(Scene& scene, const Vec3& offset, double factor) {
         c.extent *= factor;
     }
     for (Material& m : scene.materials) {
+        if (m.absorption) m.absorption->distance *= factor;
         if (auto* map = std::get_if<ImageMap>(&m.pattern)) map->size *= factor;
         if (auto* checker = std::get_if<Checker>(&m.pattern)) {
             checker->size *= factor;
@@ -82,6 +85,7 @@ void expose(Scene& scene, double stops) {
     for (Material& m : scene.materials) scale(m.emission);
     scale(scene.background);
     scale(scene.ambient);
+    if (scene.sky) scene.sky->gain *= gain;
 }
 
 // One sample of a raster as linear light.
@@ -103,6 +107,32 @@ float linear_sample(const Texture& texture, std::size_t sample) {
     float value = 0;
     std::memcpy(&value, data + 4 * sample, 4);
     return value;
+}
+
+// Makes the sky's gain part of its image: POV-Ray 3.7 has none. Floats are rounded to the halves
+// that it reads.
+void develop_sky(Scene& scene) {
+    if (!scene.sky || scene.textures[scene.sky->texture].raster.depth != Depth::f32) {
+        if (!scene.sky || scene.sky->gain == 1) return;
+    }
+    const Texture& source = scene.textures[scene.sky->texture];
+    const Raster& in = source.raster;
+    Texture out = source;
+    out.raster.depth = Depth::f32;
+    out.raster.channels = 3;
+    out.raster.data.resize(in.texels() * 3 * sizeof(float));
+    for (std::size_t t = 0; t < in.texels(); ++t) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            const std::size_t channel = in.channels >= 3 ? c : 0;
+            const double value =
+                double(linear_sample(source, t * std::size_t(in.channels) + channel)) *
+                scene.sky->gain;
+            const float half = Imath::half(float(value));
+            std::memcpy(out.raster.data.data() + sizeof(float) * (3 * t + c), &half, sizeof half);
+        }
+    }
+    scene.textures.push_back(std::move(out));
+    scene.sky = Sky{.texture = Index(scene.textures.size() - 1), .gain = 1};
 }
 
 // The texture times `color`, in 16-bit linear: both renderers then read the same numbers.
@@ -132,7 +162,8 @@ Texture tinted(const Texture& texture, const Color& color) {
 void tint_textures(Scene& scene) {
     for (Material& m : scene.materials) {
         auto* map = std::get_if<ImageMap>(&m.pattern);
-        const bool layers = m.metallic == 0 && m.opacity == 1 && m.emission == Color(0);
+        const bool own_tint = m.gloss && m.gloss->color.texture != no_index;
+        const bool layers = (m.metallic == 0 || own_tint) && m.opacity == 1;
         if (map == nullptr || m.color == Color(1) || layers) continue;
         scene.textures.push_back(tinted(scene.textures[map->texture], m.color));
         map->texture = Index(scene.textures.size() - 1);
@@ -151,6 +182,7 @@ NormalisedScene normalise(Scene scene, const RenderOptions& options) {
     move_and_scale(scene, result.offset, result.factor);
     expose(scene, options.exposure);
     tint_textures(scene);
+    develop_sky(scene);
     result.scene = std::move(scene);
     return result;
 }

@@ -1,5 +1,5 @@
 // Metallic-roughness -> Phong.
-#include "penumbra/scene.h"
+#include "phong.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,12 +23,44 @@ namespace penumbra {
 //
 // Highlight and mirror are tinted by Material::metallic: at normal incidence a coefficient k gives
 // k (1 - metallic + metallic P). To give F the coefficient must be F over that.
+
+// A mirror image fainter than this is left out: nobody sees it, but it would cost a ray.
+constexpr double faintest = 0.004;
+
+Polish polish_of(double roughness) {
+    const double r = std::clamp(roughness, 0.0, 1.0);
+    const double a = std::pow(std::max(r, 0.045), 2);
+    return {.highlight = 1 / (4 * a * a),
+            .exponent = std::clamp(0.676 / (a * a) - 1.17, 1.0, 10000.0),
+            .sharp = std::pow(std::max(0.0, 1 - r / 0.6), 2)};
+}
+
+double scattered(const Polish& polish, double metallic, double f0, double highlight) {
+    const double lobe = 2 * highlight / (polish.exponent + 1), blurred = 1 - polish.sharp;
+    return (1 - metallic) * (1 - f0) + blurred * std::max(0.0, metallic * blurred - lobe);
+}
+
+Lobe full_lobe(double roughness, double limit, double strongest) {
+    const Polish polish = polish_of(roughness);
+    const bool mirrors = strongest * polish.sharp >= faintest;
+    return {.specular = float(std::min(polish.highlight, limit)),
+            .shininess = float(polish.exponent),
+            .reflection = Color(mirrors ? float(polish.sharp) : 0.0F)};
+}
+
+void add_coat(Lobe& lobe, double f0, double roughness) {
+    const Polish polish = polish_of(roughness);
+    if (f0 * polish.sharp >= faintest) lobe.reflection += Color(float(f0 * polish.sharp));
+    const float highlight = float(std::min(f0 * polish.highlight, 1.0));
+    if (highlight <= lobe.specular) return;
+    lobe.specular = highlight;
+    lobe.shininess = float(polish.exponent);
+}
+
 void set_metallic_roughness(Material& material, float metallic, float roughness, float f0) {
     const double m = std::clamp(double(metallic), 0.0, 1.0);
-    const double r = std::clamp(double(roughness), 0.0, 1.0);
     const double dielectric = std::clamp(double(f0), 0.0, 1.0);
-    const double a = std::pow(std::max(r, 0.045), 2);
-    const double sharp = std::pow(std::max(0.0, 1 - r / 0.6), 2);
+    const Polish polish = polish_of(double(roughness));
 
     // F over the tint, for one channel of the base colour.
     const auto untinted = [&](double base) {
@@ -38,20 +70,17 @@ void set_metallic_roughness(Material& material, float metallic, float roughness,
     };
     const Color& base = material.color;
     const double strongest = untinted(double(std::max({base.x, base.y, base.z})));
-    const double highlight = std::min(strongest / (4 * a * a), 1.0);
-    const double exponent = std::clamp(0.676 / (a * a) - 1.17, 1.0, 10000.0);
-    const double lobe = 2 * highlight / (exponent + 1);
+    const double highlight = std::min(strongest * polish.highlight, 1.0);
 
     material.metallic = float(m);
     material.specular = float(highlight);
-    material.shininess = float(exponent);
-    material.diffuse =
-        float((1 - m) * (1 - dielectric) + (1 - sharp) * std::max(0.0, m * (1 - sharp) - lobe));
+    material.shininess = float(polish.exponent);
+    material.diffuse = float(scattered(polish, m, dielectric, highlight));
     for (int channel = 0; channel < 3; ++channel) {
         const double b = double(base[channel]);
         const double fresnel = dielectric + m * (b - dielectric);
-        // A mirror that nobody sees would still cost a ray.
-        material.reflection[channel] = fresnel * sharp < 0.004 ? 0.0F : float(untinted(b) * sharp);
+        material.reflection[channel] =
+            fresnel * polish.sharp < faintest ? 0.0F : float(untinted(b) * polish.sharp);
     }
 }
 

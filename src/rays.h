@@ -32,6 +32,9 @@ struct Vectors {
     void clear(std::size_t count) {
         for (auto& values : axis) values.assign(std::max(count, values.size()), 0.0);
     }
+    void fill(std::size_t count, double value) {
+        for (auto& values : axis) std::fill_n(values.begin(), count, value);
+    }
     Vec3 operator[](std::size_t i) const { return {axis[0][i], axis[1][i], axis[2][i]}; }
     void set(std::size_t i, const Vec3& v) {
         axis[0][i] = v.x;

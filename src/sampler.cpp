@@ -49,28 +49,36 @@ Texels texels(double position, int size, Wrap wrap, bool bilinear, bool from_top
     return {wrapped(int(cell), size, wrap), wrapped(int(cell) - 1, size, wrap), x - cell};
 }
 
-float channel(const Sampler& sampler, std::size_t index) {
-    const std::byte* data = sampler.texture->raster.data.data();
-    switch (sampler.texture->raster.depth) {
-    case Depth::u8: return sampler.decode[std::to_integer<std::size_t>(data[index])];
-    case Depth::u16: {
-        std::uint16_t word = 0;
-        std::memcpy(&word, data + 2 * index, 2);
-        return sampler.decode[word];
-    }
-    case Depth::f32: break;
-    }
-    float value = 0;
-    std::memcpy(&value, data + 4 * index, 4);
-    return value;
+// Samples `first` and after: grey, or RGB. The depth is looked at once for all three.
+template <class Read>
+Vec3 read_texel(int channels, std::size_t first, const Read& read) {
+    if (channels < 3) return Vec3(read(first));
+    return {read(first), read(first + 1), read(first + 2)};
 }
 
 Vec3 texel(const Sampler& sampler, int column, int row) {
     const Raster& raster = sampler.texture->raster;
     const std::size_t first = (std::size_t(row) * std::size_t(raster.width) + std::size_t(column)) *
                               std::size_t(raster.channels);
-    if (raster.channels < 3) return Vec3(channel(sampler, first));
-    return {channel(sampler, first), channel(sampler, first + 1), channel(sampler, first + 2)};
+    const std::byte* data = raster.data.data();
+    switch (raster.depth) {
+    case Depth::u8:
+        return read_texel(raster.channels, first, [&](std::size_t i) {
+            return sampler.decode[std::to_integer<std::size_t>(data[i])];
+        });
+    case Depth::u16:
+        return read_texel(raster.channels, first, [&](std::size_t i) {
+            std::uint16_t word = 0;
+            std::memcpy(&word, data + 2 * i, 2);
+            return sampler.decode[word];
+        });
+    case Depth::f32: break;
+    }
+    return read_texel(raster.channels, first, [&](std::size_t i) {
+        float value = 0;
+        std::memcpy(&value, data + 4 * i, 4);
+        return value;
+    });
 }
 
 }  // namespace

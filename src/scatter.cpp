@@ -22,10 +22,6 @@ void Generation::push(const Vec3& origin, const Vec3& direction, const Path& pat
 
 namespace {
 
-void enter(Interiors& inside, Index object) {
-    if (inside.count < inside.objects.size()) inside.objects[inside.count++] = object;
-}
-
 // Crosses the surface of `object` and returns the ratio of indices outside / inside, as POV-Ray
 // does (source/backend/render/trace.cpp of 3.7, ComputeRefraction): only leaving the object that
 // was entered last bends the ray.
@@ -34,60 +30,101 @@ double cross(const World& world, Interiors& inside, Index object) {
     const auto index_of = [&](std::uint32_t depth) {
         return depth == 0 ? 1.0 : world.finish_of(inside.objects[depth - 1]).ior;
     };
-    const auto end = inside.objects.begin() + inside.count;
-    const auto found = std::find(inside.objects.begin(), end, object);
-    if (found == end) {
-        const double ratio = index_of(inside.count) / own;
-        enter(inside, object);
-        return ratio;
+    const bool last = inside.count > 0 && inside.objects[inside.count - 1] == object;
+    const double around = index_of(inside.count);
+    if (inside.toggle(object)) return around / own;
+    return last ? own / index_of(inside.count) : 1;
+}
+
+// The index of refraction behind the surface over that before it, as POV-Ray sees it when it asks
+// for Fresnel's term (source/backend/render/trace.cpp of 3.7, ComputeRelativeIOR).
+double relative_index(const World& world, const Interiors& inside, Index object) {
+    const double own = world.finish_of(object).ior;
+    if (inside.count == 0) return own;
+    const double last = world.finish_of(inside.objects[inside.count - 1]).ior;
+    if (!inside.contains(object)) return own / last;
+    return inside.count == 1 ? 1 / own : last / own;
+}
+
+// Fresnel's reflectance of unpolarised light that comes in at the angle of `cosine`.
+double fresnel_reflectance(double index, double cosine) {
+    const double square = index * index + cosine * cosine - 1;
+    if (square <= 0) return 1;
+    const double g = std::sqrt(square), sum = g + cosine, difference = g - cosine;
+    const double a = difference / sum;
+    const double b = (cosine * sum - 1) / (cosine * difference + 1);
+    return std::clamp(0.5 * a * a * (1 + b * b), 0.0, 1.0);
+}
+
+// What the lobes of the surface point reflect, in its tint.
+Vec3 mirrored_share(const Surfaces& surfaces, std::size_t slot) {
+    const Finish& finish = *surfaces.finish[slot];
+    const LobeMix& mix = surfaces.lobes[slot];
+    Vec3 share = finish.lobes[mix.first].reflection;
+    if (mix.share > 0)
+        share = share * (1 - mix.share) + finish.lobes[mix.first + 1].reflection * mix.share;
+    if (finish.metallic > 0)
+        share *= metallic_tint(finish.metallic, -surfaces.view[slot].dot(surfaces.normal[slot]),
+                               surfaces.tint[slot]);
+    return share;
+}
+
+// Pushes the ray that goes on behind the surface. Returns whether it is reflected totally instead.
+bool transmit(const World& world, const Surfaces& surfaces, std::size_t slot, const Path& path,
+              Generation& next) {
+    const Finish& finish = *surfaces.finish[slot];
+    const Vec3 view = surfaces.view[slot], normal = surfaces.normal[slot];
+    const Vec3 position = surfaces.position[slot];
+    Vec3 left(1);  // of the light on its way inside of the object that is left or not entered
+    if (finish.absorbs && path.inside.contains(surfaces.object[slot]))
+        for (int c = 0; c < 3; ++c)
+            left[c] = std::exp(-finish.absorption[c] * surfaces.depth[slot]);
+    Path through = path;
+    const double ratio = cross(world, through.inside, surfaces.object[slot]);
+    const double cosine = -view.dot(normal);
+    const double rest = 1 + ratio * ratio * (cosine * cosine - 1);
+    if (std::abs(ratio - 1) < least_cosine) {
+        through.weight *= surfaces.through[slot] * left;
+        next.push(position, view, through);
+        return false;
     }
-    const bool last = found + 1 == end;
-    const double ratio = last ? own / index_of(inside.count - 1) : 1;
-    std::copy(found + 1, end, found);
-    --inside.count;
-    return ratio;
+    if (rest >= 0) {
+        through.weight *= surfaces.through[slot] * left;
+        ++through.level;
+        const Vec3 bent = view * ratio + normal * (ratio * cosine - std::sqrt(rest));
+        next.push(position, bent.normalized(), through);
+        return false;
+    }
+    // POV-Ray does not filter what is reflected totally; a gap in the coverage reflects as well.
+    const double share = finish.opacity < 1 ? 1 : 1 - surfaces.coverage[slot];
+    Path back = path;
+    ++back.level;
+    back.weight *= left * share;
+    next.push(position, surfaces.mirrored[slot].normalized(), back);
+    return true;
 }
 
 }  // namespace
 
 void scatter(const World& world, const Surfaces& surfaces, std::size_t slot, const Path& path,
              int max_depth, Generation& next) {
+    if (path.level >= max_depth) return;
     const Finish& finish = *surfaces.finish[slot];
-    const Vec3 view = surfaces.view[slot], normal = surfaces.normal[slot];
     const Vec3 position = surfaces.position[slot];
-    const bool deeper = path.level < max_depth;
-    if (!deeper) return;
-
-    bool total = false;
-    if (finish.opacity < 1) {
-        Path through = path;
-        const double ratio = cross(world, through.inside, surfaces.object[slot]);
-        const double cosine = -view.dot(normal);
-        const double rest = 1 + ratio * ratio * (cosine * cosine - 1);
-        total = rest < 0;
-        if (std::abs(ratio - 1) < least_cosine) {
-            through.weight *= 1 - finish.opacity;
-            next.push(position, view, through);
-        } else if (!total) {
-            through.weight *= 1 - finish.opacity;
-            ++through.level;
-            const Vec3 bent = view * ratio + normal * (ratio * cosine - std::sqrt(rest));
-            next.push(position, bent.normalized(), through);
-        } else {
-            Path back = path;
-            ++back.level;
-            next.push(position, surfaces.mirrored[slot].normalized(), back);
-        }
-    }
-    if (finish.mirrors && !total) {
-        Path back = path;
-        ++back.level;
-        Vec3 share = finish.reflection;
-        if (finish.metallic > 0)
-            share *= metallic_tint(finish.metallic, -view.dot(normal), surfaces.pigment[slot]);
-        back.weight *= share;
-        next.push(position, surfaces.mirrored[slot].normalized(), back);
-    }
+    const double coverage = surfaces.coverage[slot];
+    bool total = false;  // internal reflection
+    if (!finish.opaque && surfaces.through[slot] != Vec3(0))
+        total = transmit(world, surfaces, slot, path, next);
+    // Where the surface itself is opaque POV-Ray looks for no total reflection.
+    if (!finish.mirrors || coverage == 0 || (total && finish.opacity < 1)) return;
+    Vec3 share = mirrored_share(surfaces, slot) * coverage;
+    if (finish.fresnel)
+        share *= fresnel_reflectance(relative_index(world, path.inside, surfaces.object[slot]),
+                                     -surfaces.view[slot].dot(surfaces.normal[slot]));
+    Path back = path;
+    ++back.level;
+    back.weight *= share;
+    next.push(position, surfaces.mirrored[slot].normalized(), back);
 }
 
 Interiors interiors_at(const World& world, const Vec3& eye) {
@@ -96,11 +133,11 @@ Interiors interiors_at(const World& world, const Vec3& eye) {
     const Scene& scene = world.scene;
     for (std::size_t i = 0; i < scene.spheres.size(); ++i)
         if ((eye - scene.spheres[i].center).length() < scene.spheres[i].radius)
-            enter(inside, world.first_sphere() + Index(i));
+            inside.toggle(world.first_sphere() + Index(i));
     // The inside of a plane is the side that its normal points away from.
     for (std::size_t i = 0; i < world.planes.size(); ++i)
         if (world.planes[i].frame.normal.dot(eye) < world.planes[i].distance)
-            enter(inside, world.first_plane() + Index(i));
+            inside.toggle(world.first_plane() + Index(i));
     return inside;
 }
 

@@ -5,13 +5,6 @@
 
 namespace penumbra {
 
-/// The transparent objects that a ray is inside of, outermost first, as POV-Ray keeps them. Deeper
-/// nesting than the array holds is not told apart.
-struct Interiors {
-    std::array<Index, 7> objects = {};
-    std::uint32_t count = 0;
-};
-
 /// What a ray carries along its path.
 struct Path {
     Vec3 weight = Vec3(1);  ///< of its light in the pixel

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace penumbra {
 
@@ -65,6 +66,20 @@ View view_of(const Camera& camera, int width, int height) {
             .right = right * across,
             .up = up * along,
             .direction = forward};
+}
+
+Color fade_color(const Absorption& absorption) {
+    const auto fade = [](float c) { return float(1 + std::log(double(std::max(c, 1e-6F)))); };
+    return {fade(absorption.color.x), fade(absorption.color.y), fade(absorption.color.z)};
+}
+
+Vec3 fade_exponent(const Absorption& absorption) {
+    return (Vec3(1) - Vec3(fade_color(absorption))) * (1 / double(float(absorption.distance)));
+}
+
+Vec2 sky_texcoord(const Vec3& d) {
+    return {std::atan2(d.x, -d.z) / (2 * std::numbers::pi) + 0.5,
+            std::asin(std::clamp(d.y, -1.0, 1.0)) / std::numbers::pi + 0.5};
 }
 
 }  // namespace penumbra

@@ -63,7 +63,7 @@ void block_by_shapes(const World& world, const ShadowRays& rays, std::span<unsig
     };
     Index object = world.first_sphere();
     for (const Sphere& sphere : world.scene.spheres) {
-        if (world.finish_of(object++).opacity < 1) continue;
+        if (!world.finish_of(object++).opaque) continue;
         for (std::size_t i = 0; i < rays.count; ++i)
             if (visible[i] != 0 && blocked(cross_sphere(sphere, rays.origin[i], rays.direction[i]),
                                            rays.distance[i] - shadow_margin))
@@ -71,7 +71,7 @@ void block_by_shapes(const World& world, const ShadowRays& rays, std::span<unsig
     }
     for (const PreparedPlane& plane : world.planes) {
         const Index self = object++;
-        if (world.finish_of(self).opacity < 1) continue;
+        if (!world.finish_of(self).opaque) continue;
         for (std::size_t i = 0; i < rays.count; ++i)
             // A ray never meets the plane again that it starts on.
             if (visible[i] != 0 && rays.object[i] != self &&
@@ -85,7 +85,7 @@ bool translucent_shape(const World& world, const Vec3& origin, const Vec3& direc
                        double nearest, Hit& hit) {
     bool found = false;
     each_shape(world, origin, direction, [&](Index object, const Crossings& crossings) {
-        if (world.finish_of(object).opacity >= 1) return;
+        if (world.finish_of(object).opaque) return;
         for (int k = 0; k < crossings.count; ++k) {
             const double t = crossings.t[std::size_t(k)];
             if (!(t > nearest && t < hit.t)) continue;

@@ -1,18 +1,24 @@
 #include "surface.h"
 
 #include "noise.h"
+#include "normal_map.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace penumbra {
 
 void Surfaces::resize(std::size_t capacity) {
-    for (Vectors* vectors : {&position, &normal, &view, &mirrored, &facet_normal, &pigment})
+    for (Vectors* vectors :
+         {&position, &normal, &view, &mirrored, &facet_normal, &pigment, &tint, &own, &through})
         vectors->resize(capacity);
     diffuse.resize(capacity);
-    specular.resize(capacity);
+    coverage.resize(capacity);
+    depth.resize(capacity);
+    lobes.resize(capacity);
     object.resize(capacity);
     finish.resize(capacity);
+    inside.resize(capacity);
 }
 
 namespace {
@@ -56,6 +62,12 @@ Geometry on_facet(const World& world, const Hit& hit, const Vec3& point) {
     if (placed.smooth && !(nearly_equal(mesh.normals[a], mesh.normals[b]) &&
                            nearly_equal(mesh.normals[a], mesh.normals[c])))
         g.normal = placed.normal_to_world(interpolate(mesh.normals)).normalized();
+    const auto& map = world.scene.materials[mesh.material].normal_map;
+    if (map && has_tangent_frames(mesh))
+        g.normal = placed
+                       .normal_to_world(perturbed_normal(*map, world.samplers[map->map.texture],
+                                                         mesh, hit.facet, weights))
+                       .normalized();
     if (!mesh.texcoords.empty())
         g.texcoord = Vec2(mesh.texcoords[a]) * weights.x + Vec2(mesh.texcoords[b]) * weights.y +
                      Vec2(mesh.texcoords[c]) * weights.z;
@@ -79,13 +91,27 @@ bool odd_cell(const Checker& checker, const Vec3& point) {
     return (std::int64_t(cell(p.x) + cell(p.y) + cell(p.z)) & 1) != 0;
 }
 
-Vec3 pigment_at(const World& world, const Finish& finish, const Geometry& geometry,
-                const Vec3& point, bool plane) {
+Geometry geometry_at(const World& world, const Hit& hit, const Vec3& point) {
+    if (hit.object < world.first_sphere()) return on_facet(world, hit, point);
+    if (hit.object >= world.first_plane())
+        return on_plane(world.planes[hit.object - world.first_plane()].frame, point);
+    return on_sphere(world.scene.spheres[hit.object - world.first_sphere()], point);
+}
+
+// The image at the mesh's texture coordinates `uv`.
+Vec3 image_at(const World& world, const ImageMap& map, const Vec2& uv) {
+    const auto& t = map.transform;
+    return Vec3(sample(world.samplers[map.texture], t[0] * uv.x + t[1] * uv.y + t[2],
+                       t[3] * uv.x + t[4] * uv.y + t[5]));
+}
+
+// The pigment but for the vertex colour.
+Vec3 base_at(const World& world, const Finish& finish, const Geometry& geometry, const Vec3& point,
+             bool plane) {
     const Material& material = *finish.material;
     if (const auto* map = std::get_if<ImageMap>(&material.pattern)) {
         const Vec2 uv = plane ? geometry.texcoord * (1 / map->size) : geometry.texcoord;
-        return Vec3(sample(world.samplers[map->texture], uv.x, uv.y)) * Vec3(material.color) *
-               geometry.vertex_color;
+        return image_at(world, *map, uv) * Vec3(material.color);
     }
     if (const auto* checker = std::get_if<Checker>(&material.pattern))
         return Vec3(checker->colors[odd_cell(*checker, point) ? 1 : 0]);
@@ -93,22 +119,61 @@ Vec3 pigment_at(const World& world, const Finish& finish, const Geometry& geomet
         const double value = noise_value(*noise, point);
         return Vec3(noise->colors[0]) * (1 - value) + Vec3(noise->colors[1]) * value;
     }
-    return Vec3(material.color) * geometry.vertex_color;
+    return Vec3(material.color);
 }
+
+bool takes_vertex_colors(const Material& material) {
+    return std::holds_alternative<std::monostate>(material.pattern) ||
+           std::holds_alternative<ImageMap>(material.pattern);
+}
+
+double coverage_at(const World& world, const Coverage& coverage, const Vec2& texcoord) {
+    const double there = image_at(world, coverage.map, texcoord).x;
+    if (!coverage.cutoff) return there;
+    return there >= cutoff_threshold(*coverage.cutoff) ? 1 : 0;
+}
+
+LobeMix lobes_at(const World& world, const Gloss& gloss, const Vec2& texcoord) {
+    if (gloss.level.texture == no_index || gloss.lobes.size() < 2) return {};
+    const double last = double(gloss.lobes.size() - 1);
+    const double level = std::clamp(image_at(world, gloss.level, texcoord).x, 0.0, 1.0) * last;
+    const double first = std::min(std::floor(level), last - 1);
+    return {Index(first), level - first};
+}
+
+// What lies behind, seen through the surface: T of the surface itself, all of it in the gaps.
+Vec3 through_at(const Finish& finish, const Vec3& pigment, double coverage) {
+    const Vec3 tint = Vec3(1 - finish.transmission) + pigment * finish.transmission;
+    return tint * ((1 - finish.opacity) * coverage) + Vec3(1 - coverage);
+}
+
+// The terms that Material's maps change over a mesh.
+void apply_maps(const World& world, const Geometry& g, const Finish& finish, Surfaces& surfaces,
+                std::size_t slot) {
+    const Material& material = *finish.material;
+    double coverage = 1;
+    Vec3 emission = finish.emission;
+    if (material.coverage) coverage = coverage_at(world, *material.coverage, g.texcoord);
+    if (material.emission_map) emission *= image_at(world, *material.emission_map, g.texcoord);
+    if (material.gloss) {
+        surfaces.lobes[slot] = lobes_at(world, *material.gloss, g.texcoord);
+        if (material.gloss->color.texture != no_index)
+            surfaces.tint.set(slot, image_at(world, material.gloss->color, g.texcoord));
+    }
+    surfaces.coverage[slot] = coverage;
+    surfaces.own.set(slot, (surfaces.pigment[slot] * finish.ambient + emission) *
+                               (finish.opacity * coverage));
+    surfaces.diffuse[slot] = finish.diffuse * finish.opacity * coverage;
+}
+
+bool has_maps(const Material& m) { return m.coverage || m.emission_map || m.gloss; }
 
 }  // namespace
 
 void find_surface(const World& world, const Vec3& origin, const Vec3& direction, const Hit& hit,
                   Surfaces& surfaces, std::size_t slot) {
     const Vec3 point = origin + direction * hit.t;
-    const bool facet = hit.object < world.first_sphere(), plane = hit.object >= world.first_plane();
-    Geometry g;
-    if (facet)
-        g = on_facet(world, hit, point);
-    else if (plane)
-        g = on_plane(world.planes[hit.object - world.first_plane()].frame, point);
-    else
-        g = on_sphere(world.scene.spheres[hit.object - world.first_sphere()], point);
+    Geometry g = geometry_at(world, hit, point);
 
     // Only the shading normal decides which side the eye is on: POV-Ray never asks the facet's.
     if (g.normal.dot(direction) > 0) g.normal = -g.normal;
@@ -118,11 +183,34 @@ void find_surface(const World& world, const Vec3& origin, const Vec3& direction,
     surfaces.view.set(slot, direction);
     surfaces.facet_normal.set(slot, g.facet_normal);
     surfaces.mirrored.set(slot, direction - g.normal * (2 * direction.dot(g.normal)));
-    surfaces.pigment.set(slot, pigment_at(world, finish, g, point, plane));
+    const Vec3 base = base_at(world, finish, g, point, hit.object >= world.first_plane());
+    const Vec3 pigment = takes_vertex_colors(*finish.material) ? base * g.vertex_color : base;
+    surfaces.pigment.set(slot, pigment);
+    surfaces.tint.set(slot, finish.textured ? base : pigment);
+    surfaces.own.set(slot, (pigment * finish.ambient + finish.emission) * finish.opacity);
     surfaces.diffuse[slot] = finish.diffuse * finish.opacity;
-    surfaces.specular[slot] = finish.specular;
+    surfaces.coverage[slot] = 1;
+    surfaces.depth[slot] = hit.t;
+    surfaces.lobes[slot] = {};
     surfaces.object[slot] = hit.object;
     surfaces.finish[slot] = &finish;
+    if (hit.object < world.first_sphere() && has_maps(*finish.material))
+        apply_maps(world, g, finish, surfaces, slot);
+    if (!finish.opaque)
+        surfaces.through.set(slot, through_at(finish, pigment, surfaces.coverage[slot]));
+}
+
+Vec3 light_through(const World& world, const Vec3& origin, const Vec3& direction, const Hit& hit) {
+    const Vec3 point = origin + direction * hit.t;
+    const Geometry g = geometry_at(world, hit, point);
+    const Finish& finish = world.finish_of(hit.object);
+    const bool facet = hit.object < world.first_sphere();
+    const std::optional<Coverage>& coverage = finish.material->coverage;
+    const double there = facet && coverage ? coverage_at(world, *coverage, g.texcoord) : 1;
+    if (finish.opacity >= 1) return Vec3(1 - there);
+    const Vec3 base = base_at(world, finish, g, point, hit.object >= world.first_plane());
+    return through_at(finish, takes_vertex_colors(*finish.material) ? base * g.vertex_color : base,
+                      there);
 }
 
 }  // namespace penumbra

@@ -96,6 +96,14 @@ void find_hits(const World& world, bool coherent, Workspace& work) {
     world.facets.closest(work.current.rays, work.hits, coherent);
 }
 
+// What a ray that hits nothing sees.
+Vec3 sky_light(const World& world, const Vec3& direction) {
+    if (!world.scene.sky) return Vec3(world.scene.background);
+    const Vec2 uv = sky_texcoord(direction);
+    return Vec3(sample(world.samplers[world.scene.sky->texture], uv.x, uv.y)) *
+           world.scene.sky->gain;
+}
+
 void find_surfaces(const World& world, Workspace& work) {
     const Generation& rays = work.current;
     if (work.surfaces.finish.size() < rays.rays.count) {
@@ -106,9 +114,11 @@ void find_surfaces(const World& world, Workspace& work) {
     work.ray_of.clear();
     for (std::size_t i = 0; i < rays.rays.count; ++i) {
         if (work.hits[i].object == no_index) {
-            work.pixels[rays.paths[i].pixel] += rays.paths[i].weight * Vec3(world.scene.background);
+            work.pixels[rays.paths[i].pixel] +=
+                rays.paths[i].weight * sky_light(world, rays.rays.direction[i]);
             continue;
         }
+        work.surfaces.inside[work.surfaces.count] = &rays.paths[i].inside;
         find_surface(world, rays.rays.origin[i], rays.rays.direction[i], work.hits[i],
                      work.surfaces, work.surfaces.count++);
         work.ray_of.push_back(i);

@@ -7,20 +7,37 @@ namespace penumbra {
 
 namespace {
 
+PreparedLobe prepare(const Lobe& lobe) {
+    // cos^N < 1e-9 changes no picture.
+    return {.specular = std::max(0.0F, lobe.specular),
+            .shininess = lobe.shininess,
+            .highlight_end = lobe.shininess > 0 ? std::pow(1e-9, 1 / double(lobe.shininess)) : 0,
+            .reflection = Vec3(lobe.reflection)};
+}
+
 Finish prepare(const Material& m, const Color& ambient_light) {
     Finish f = {.material = &m,
                 .ambient = Vec3(m.ambient) * Vec3(ambient_light),
                 .emission = Vec3(m.emission),
-                .reflection = Vec3(m.reflection),
                 .diffuse = std::max(0.0F, m.diffuse),
-                .specular = std::max(0.0F, m.specular),
-                .shininess = m.shininess,
                 .metallic = m.metallic,
                 .opacity = m.opacity,
+                .transmission = m.transmission,
                 .ior = m.ior,
-                .mirrors = m.reflection != Color(0)};
-    // cos^N < 1e-9 changes no picture.
-    f.highlight_end = m.shininess > 0 ? std::pow(1e-9, 1 / double(m.shininess)) : 0;
+                .opaque = opaque(m),
+                .absorbs = m.absorption.has_value() && !opaque(m),
+                .fresnel = m.fresnel,
+                .textured = std::holds_alternative<ImageMap>(m.pattern)};
+    if (m.gloss)
+        for (const Lobe& lobe : m.gloss->lobes) f.lobes.push_back(prepare(lobe));
+    else
+        f.lobes = {prepare(
+            {.specular = m.specular, .shininess = m.shininess, .reflection = m.reflection})};
+    for (const PreparedLobe& lobe : f.lobes) {
+        f.shines |= lobe.specular > 0;
+        f.mirrors |= lobe.reflection != Vec3(0);
+    }
+    if (m.absorption) f.absorption = fade_exponent(*m.absorption);
     return f;
 }
 
@@ -44,7 +61,8 @@ PreparedSource prepare(const Source& s) {
 World::World(const Scene& given) : scene(given), facets(given), blockers(make_blocker_tree(given)) {
     for (const Material& m : scene.materials) {
         finishes.push_back(prepare(m, scene.ambient));
-        translucent |= m.opacity < 1;
+        translucent |= !opaque(m);
+        absorbing |= finishes.back().absorbs;
     }
     for (const Texture& t : scene.textures) samplers.push_back(make_sampler(t));
     for (const Light& light : scene.lights) {

@@ -9,14 +9,24 @@
 
 namespace penumbra {
 
+/// A Lobe with its float32 numbers widened.
+struct PreparedLobe {
+    double specular = 0, shininess = 0;
+    double highlight_end = 0;  ///< below this cosine the highlight is nothing
+    Vec3 reflection = Vec3(0);
+};
+
 /// A Material with its float32 numbers widened and combined with the scene's.
 struct Finish {
     const Material* material = nullptr;
-    Vec3 ambient = {}, emission = {}, reflection = {};  ///< ambient includes Ia
-    double diffuse = 0, specular = 0, shininess = 0, metallic = 0;
-    double opacity = 1, ior = 1;
-    double highlight_end = 0;  ///< below this cosine the highlight is nothing
-    bool mirrors = false;
+    Vec3 ambient = {}, emission = {};      ///< ambient includes Ia
+    std::vector<PreparedLobe> lobes = {};  ///< of the material itself, or of its gloss
+    double diffuse = 0, metallic = 0;
+    double opacity = 1, transmission = 0, ior = 1;
+    Vec3 absorption = Vec3(0);  ///< exponent per unit of length
+    bool opaque = true, absorbs = false, fresnel = false;
+    bool textured = false;
+    bool shines = false, mirrors = false;  ///< any lobe does
 };
 
 /// A Source with its cosines and unit axis.
@@ -49,6 +59,7 @@ struct World {
     std::vector<SourceGroup> lights = {};
     std::vector<PreparedPlane> planes = {};
     bool translucent = false;  ///< any object lets light through
+    bool absorbing = false;    ///< any interior takes light away
 
     explicit World(const Scene& given);
 

@@ -170,3 +170,31 @@ TEST_CASE("defects, are named one by one") {
     CHECK(found[3] == "camera 'eye' looks along its up vector or nowhere");
     CHECK(defects(one_sphere(1)).empty());
 }
+
+TEST_CASE("drop_coincident_facets, leaves the first of facets that lie on one another") {
+    Scene scene = test::empty_scene();
+    Mesh mesh{.name = "sheet", .material = 0};
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+    mesh.triangles = {{0, 1, 2}, {1, 3, 2}, {2, 0, 1}};
+    scene.meshes = {mesh, mesh};
+    scene.instances = {{.name = "a", .mesh = 0}, {.name = "b", .mesh = 1}};
+    scene.instances[1].transform[3][0] = 1e-3;
+    CHECK(drop_coincident_facets(scene) == 2);  // each mesh's own third facet
+    CHECK(scene.meshes[0].triangles.size() == 2);
+    scene.instances[1].transform[3][0] = 0;
+    CHECK(drop_coincident_facets(scene) == 2);
+    CHECK(scene.meshes[0].triangles.size() == 2);
+    CHECK(scene.meshes[1].triangles.empty());
+
+    SECTION("unless several instances share the mesh") {
+        scene.meshes[1] = scene.meshes[0];
+        scene.instances.push_back({.name = "c", .mesh = 1});
+        scene.instances[2].transform[3][1] = 5;
+        CHECK(drop_coincident_facets(scene) == 0);
+    }
+    SECTION("or light passes through them") {
+        scene.meshes[1] = scene.meshes[0];
+        scene.materials[0].opacity = 0.5F;
+        CHECK(drop_coincident_facets(scene) == 0);
+    }
+}

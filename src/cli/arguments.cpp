@@ -1,5 +1,6 @@
 #include "arguments.h"
 
+#include "descriptions.h"
 #include "values.h"
 
 #include <CLI/CLI.hpp>
@@ -16,28 +17,6 @@ namespace {
 constexpr double infinity = HUGE_VAL;
 constexpr Range any = {-infinity, infinity};
 constexpr Range not_negative = {0, infinity};
-
-struct Description {
-    Command command;
-    const char* name;
-    const char* what;
-    const char* example;
-};
-
-constexpr Description descriptions[] = {
-    {Command::render, "render", "Render a scene with the native ray tracer",
-     "  penumbra render chair.glb -o chair.png --size 1280x720 --samples 3"},
-    {Command::export_scene, "export", "Write the equivalent POV-Ray 3.7 scene",
-     "  penumbra export chair.glb -o chair.pov && povray chair.ini"},
-    {Command::validate, "validate",
-     "Render with both renderers, compare the pictures and write a report",
-     "  penumbra validate chair.glb --sidecar studio.toml --report chair-report\n"
-     "  penumbra validate --each --jobs 2 scenes/*.toml --report all"},
-    {Command::compare, "compare", "Measure how alike two pictures are",
-     "  penumbra compare ours.exr theirs.png --report difference --profile similar"},
-    {Command::info, "info", "Say what a scene holds and what of it can be reproduced",
-     "  penumbra info chair.glb --json"},
-};
 
 // As CLI11's, but without "..." behind every type.
 struct HelpFormat : CLI::Formatter {
@@ -133,6 +112,16 @@ class Reader {
         });
     }
 
+    // One of the values of an enumeration, by `words` in its order.
+    template <class Enum>
+    void choice(const std::string& name, const std::vector<std::string>& words,
+                const std::string& what, Enum& target) {
+        value(name, fmt::format("{}", fmt::join(words, "|")), what,
+              [name, words, &target](const std::string& text) {
+                  target = Enum(read_choice(name, text, words));
+              });
+    }
+
     void limit(const std::string& name, const std::string& metric, const std::string& what) {
         value(name, "X", what, [this, name, metric](const std::string& text) {
             overrides[metric] = read_number(name, text, {0, 1});
@@ -162,9 +151,16 @@ class Reader {
         case Command::render:
             output(".png, .exr, .tif, .jpg or .hdr file to write (<first input>.png)");
             value("--depth", "8|16", "Bits per channel of a .png or .tif (8)",
-                  [this](const std::string& text) { arguments.bits = bits_of(text); });
+                  [this](const std::string& text) {
+                      arguments.bits = read_choice("--depth", text, {"8", "16"}) == 0 ? 8 : 16;
+                  });
             break;
-        case Command::export_scene: output(".pov file to write (<first input>.pov)"); break;
+        case Command::export_scene:
+            output(".pov file to write (<first input>.pov, or .inc)");
+            choice("--pov-style", {"standalone", "include"},
+                   "A scene to render, or the model alone, for a scene of your own (standalone)",
+                   arguments.pov_style);
+            break;
         case Command::validate:
         case Command::compare:
             value("--report", "DIR", "Folder of the report", [this](const std::string& text) {
@@ -185,27 +181,29 @@ class Reader {
         return text;
     }
 
-    static int bits_of(const std::string& text) {
-        if (text != "8" && text != "16")
-            throw Error(Failure::usage, "--depth", fmt::format("'{}' is not 8 or 16", text));
-        return text == "8" ? 8 : 16;
-    }
-
     void declare_scene() {
         group = "Scene";
         value("--sidecar", "FILE", "Lay this sidecar over the inputs",
               [this](const std::string& text) {
                   arguments.load.sidecar = not_empty("--sidecar", text);
               });
-        setting("--camera", "NAME", "Use the model's camera of this name",
+        value("--variant", "NAME", "Use this variant of a glTF model's materials",
+              [this](const std::string& text) {
+                  arguments.load.model.variant = not_empty("--variant", text);
+              });
+        declare_instant();
+        setting("--camera", "NAME", "Use the model's camera of this name or number",
                 [](const std::string& text) { return "camera.name=" + toml_string(text); });
         setting("--size", "WxH", "Size of the picture in pixels (800x600)",
                 [](const std::string& text) {
                     const auto size = read_size("--size", text);
                     return fmt::format("render.size=[{},{}]", size[0], size[1]);
                 });
-        setting("--background", "R,G,B", "Linear colour behind the scene (0,0,0)",
+        setting("--background", "R,G,B|FILE",
+                "Linear colour or equirectangular image behind the scene (0,0,0)",
                 [](const std::string& text) {
+                    if (text.find_first_of("./") != text.npos && text.find(',') == text.npos)
+                        return "render.background=" + toml_string(text);
                     const Color c = read_color("--background", text);
                     return fmt::format("render.background=[{:.9},{:.9},{:.9}]", c.x, c.y, c.z);
                 });
@@ -218,6 +216,21 @@ class Reader {
         declare_rendering();
     }
 
+    void declare_instant() {
+        value("--scene", "NAME", "Show the scene of a glTF model of this name or number",
+              [this](const std::string& text) {
+                  arguments.load.model.scene = not_empty("--scene", text);
+              });
+        value("--animation", "NAME", "Pose a glTF model by its animation of this name or number",
+              [this](const std::string& text) {
+                  arguments.load.model.animation = not_empty("--animation", text);
+              });
+        value("--time", "SECONDS", "The instant of --animation, or of the first one (0)",
+              [this](const std::string& text) {
+                  arguments.load.model.time = read_number("--time", text, not_negative);
+              });
+    }
+
     void declare_rendering() {
         group = "Rendering";
         setting(
@@ -228,9 +241,16 @@ class Reader {
         setting("--max-depth", "N", "Ray segments along a path (5)", [](const std::string& text) {
             return fmt::format("render.max_depth={}", read_integer("--max-depth", text, {1, 256}));
         });
-        setting("--exposure", "EV", "Brighten by 2^EV (0)", [](const std::string& text) {
-            return fmt::format("render.exposure={}", read_number("--exposure", text, {-32, 32}));
-        });
+        setting("--exposure", "EV|auto",
+                "Brighten by 2^EV (0; auto where the model brings its own light)",
+                [](const std::string& text) -> std::string {
+                    if (text == "auto") return "render.exposure=auto";
+                    return fmt::format("render.exposure={}",
+                                       read_number("--exposure", text, {-32, 32}));
+                });
+        choice("--normal-maps", {"bake", "drop", "pixel"},
+               "Make them vertex normals, leave them out, or keep them for render alone (bake)",
+               arguments.load.normal_maps);
         value("--threads", "N", "Threads; 0 for all (PENUMBRA_THREADS, else 0)",
               [this](const std::string& text) {
                   arguments.threads = read_integer("--threads", text, {0, 1024});

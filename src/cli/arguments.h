@@ -1,6 +1,7 @@
 // The command line -> plain values.
 #pragma once
 
+#include "penumbra/exporters.h"
 #include "penumbra/importers.h"
 #include "penumbra/validation.h"
 
@@ -23,8 +24,9 @@ struct Arguments {
 
     std::optional<std::filesystem::path> output = {};  ///< -o
     std::optional<std::filesystem::path> report = {};  ///< folder
-    int bits = 8;                                      ///< of an integer picture's channels
-    int threads = 0;                                   ///< 0: as many as the machine has
+    PovStyle pov_style = PovStyle::standalone;
+    int bits = 8;     ///< of an integer picture's channels
+    int threads = 0;  ///< 0: as many as the machine has
 
     bool each = false;  ///< validate: every input is a scene of its own
     int jobs = 1;       ///< validate --each: scenes at once

@@ -10,17 +10,22 @@ namespace penumbra::cli {
 
 int export_scene(const Context& context) {
     const Arguments& arguments = context.arguments;
-    const std::filesystem::path output = arguments.output.value_or(stem_of(arguments) + ".pov");
-    if (output.extension() != ".pov")
-        throw Error(Failure::output, output.string(), "the name of a POV-Ray scene ends in .pov");
+    const bool include = arguments.pov_style == PovStyle::include;
+    const std::filesystem::path output =
+        arguments.output.value_or(stem_of(arguments) + (include ? ".inc" : ".pov"));
+    if (output.extension() != ".pov" && !(include && output.extension() == ".inc"))
+        throw Error(Failure::output, output.string(),
+                    include ? "the name of an include file of POV-Ray ends in .inc or .pov"
+                            : "the name of a POV-Ray scene ends in .pov");
     check_writable(output);
 
-    Imported imported = load(arguments, arguments.inputs);
+    Imported imported = load(context, arguments.inputs);
     Losses losses = imported.losses;
     report_losses(context, losses);
     const NormalisedScene scene = normalise(std::move(imported.scene), imported.render);
     const Exported exported = write_pov(scene, imported.render, output,
-                                        {.source = source_of(arguments, arguments.inputs),
+                                        {.style = arguments.pov_style,
+                                         .source = source_of(arguments, arguments.inputs),
                                          .command = shell_command(arguments.words),
                                          .losses = imported.losses});
     report_losses(context, exported.losses);

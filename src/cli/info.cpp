@@ -97,6 +97,7 @@ Json document(const Arguments& arguments, const Report& report) {
             {"textures", scene.textures.size()},
             {"lights", scene.lights.size()},
             {"cameras", scene.cameras.size()},
+            {"exposure", report.imported.render.exposure},
             {"animations", report.totals.animations},
             {"extensions", report.totals.extensions},
             {"losses", losses_json(report.losses)},
@@ -171,6 +172,9 @@ std::string contents(const Report& report) {
     text += count_line("textures", scene.textures.size(), names_of(scene.textures));
     text += count_line("lights", scene.lights.size(), light_names(scene));
     text += count_line("cameras", scene.cameras.size(), names_of(scene.cameras));
+    if (report.imported.render.exposure != 0)
+        text += fmt::format("{:<11}{:+g} EV{}\n", "exposure", report.imported.render.exposure,
+                            report.imported.auto_exposure ? ", metered" : "");
     if (report.totals.animations > 0) text += count_line("animations", report.totals.animations);
     if (!report.totals.extensions.empty())
         text += fmt::format("extensions {}\n", fmt::join(report.totals.extensions, ", "));
@@ -195,12 +199,17 @@ std::string fidelity(const Losses& losses) {
 int info(const Context& context) {
     const Arguments& arguments = context.arguments;
     Report report;
-    report.imported = load(arguments, arguments.inputs);
-    const Scene& scene = report.imported.scene;
+    // The facets are the model's own, not those that normal maps are baked into.
+    Arguments unbaked = arguments;
+    unbaked.load.normal_maps = NormalMaps::pixel;
+    report.imported = load({unbaked, context.console, context.stop}, arguments.inputs);
+    Scene& scene = report.imported.scene;
     report.box = bounds(scene);
     report.facets = facet_count(scene);
     report.totals = totals_of(report.imported.models);
     report.losses = report.imported.losses;
+    const Losses settled = settle_normal_maps(scene, arguments.load.normal_maps);
+    report.losses.insert(report.losses.end(), settled.begin(), settled.end());
     const Losses exported = export_losses(scene, report.imported.render);
     report.losses.insert(report.losses.end(), exported.begin(), exported.end());
 

@@ -27,7 +27,7 @@ int render(const Context& context) {
     check_picture(output, arguments.bits);
 
     const Stopwatch import_time;
-    Imported imported = load(arguments, arguments.inputs);
+    Imported imported = load(context, arguments.inputs);
     if (output.extension() != ".png") preload_image_module();  // while the picture is rendered
     report_losses(context, imported.losses);
     const RenderOptions options = imported.render;

@@ -23,12 +23,21 @@ std::string in_users_words(const Arguments& arguments, const std::string& messag
     return message;
 }
 
+void expose(const Context& context, Imported& imported) {
+    imported.render.exposure = 0;
+    const NormalisedScene scene = normalise(imported.scene, imported.render);
+    imported.render.exposure = metered_exposure(scene, imported.render, {.stop = context.stop});
+    context.console.detail(fmt::format("exposure: {:+.2f} EV, metered", imported.render.exposure));
+}
+
 }  // namespace
 
-Imported load(const Arguments& arguments, const std::vector<fs::path>& inputs) {
+Imported load(const Context& context, const std::vector<fs::path>& inputs) {
+    const Arguments& arguments = context.arguments;
     try {
         Imported imported = load_scene(inputs, arguments.load);
         imported.render.threads = arguments.threads;
+        if (imported.auto_exposure) expose(context, imported);
         return imported;
     } catch (const Error& error) {
         throw Error(error.failure, "", in_users_words(arguments, error.what()));

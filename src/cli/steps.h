@@ -22,7 +22,7 @@ class Stopwatch {
 };
 
 /// The scene of `inputs` with all that the command line lays over it. Throws Error.
-Imported load(const Arguments& arguments, const std::vector<std::filesystem::path>& inputs);
+Imported load(const Context& context, const std::vector<std::filesystem::path>& inputs);
 
 /// Warns of what could not be carried over; with --strict throws Error (input) if there is any.
 void report_losses(const Context& context, const Losses& losses);

@@ -100,7 +100,7 @@ void run_case(const Context& context, const Job& job, const fs::path& report, Ca
     result.commands = {own_command(arguments, job), fmt::format("povray {}.ini", stem)};
 
     const Stopwatch import_time;
-    Imported imported = load(arguments, job.inputs);
+    Imported imported = load(context, job.inputs);
     preload_image_module();  // while the picture is rendered
     result.losses = imported.losses;
     report_losses(context, imported.losses);

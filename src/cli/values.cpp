@@ -142,4 +142,13 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
     return best.empty() ? "" : fmt::format(" (did you mean '{}'?)", best);
 }
 
+std::size_t read_choice(const std::string& option, std::string_view text,
+                        const std::vector<std::string>& words) {
+    const auto found = std::find(words.begin(), words.end(), text);
+    if (found != words.end()) return std::size_t(found - words.begin());
+    const std::vector<std::string> others(words.begin(), words.end() - 1);
+    throw Error(Failure::usage, option,
+                fmt::format("'{}' is not {} or {}", text, fmt::join(others, ", "), words.back()));
+}
+
 }  // namespace penumbra::cli

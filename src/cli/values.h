@@ -17,6 +17,10 @@ struct Range {
 int read_integer(const std::string& option, std::string_view text, Range range);
 double read_number(const std::string& option, std::string_view text, Range range);
 
+/// The position of `text` in `words`.
+std::size_t read_choice(const std::string& option, std::string_view text,
+                        const std::vector<std::string>& words);
+
 /// "800x600".
 std::array<int, 2> read_size(const std::string& option, std::string_view text);
 

@@ -10,7 +10,13 @@
 
 namespace penumbra {
 
+enum class PovStyle {
+    standalone,  ///< a scene to render
+    include,     ///< the model alone, declared as an object, for a scene of one's own
+};
+
 struct PovOptions {
+    PovStyle style = PovStyle::standalone;
     std::string source = {};   ///< for the header: the input files
     std::string command = {};  ///< for the header: the command line
     Losses losses = {};        ///< the importers', listed in the header beside the exporter's own
@@ -24,7 +30,8 @@ struct Exported {
 /// Writes FILE.pov, FILE.ini (`povray FILE.ini`, run in the file's folder, renders the very picture
 /// that render() makes), FILE_geometry.inc and FILE_textures/. The bytes depend on nothing but the
 /// arguments. Files are written beside their targets and renamed.
-/// `file` must end in .pov. Throws Error (output).
+/// PovStyle::include writes no .ini, no camera, no light and no settings. `file` must end in .pov,
+/// or in .inc for PovStyle::include. Throws Error (output).
 Exported write_pov(const NormalisedScene& scene, const RenderOptions& render,
                    const std::filesystem::path& file, const PovOptions& options = {});
 

@@ -12,4 +12,11 @@ namespace penumbra {
 /// Precondition: defects(scene.scene).empty(). Throws Error (interrupted).
 Image render(const NormalisedScene& scene, const RenderOptions& options, const Watch& watch = {});
 
+/// The exposure, in EV and added to what is folded into `scene`, at which the picture looks right:
+/// its logarithmic mean becomes a middle grey, less so where that would clip the highlights. Takes
+/// a small picture of single sources; a multiple of 1/4 from -32 to 32, 0 when the picture is
+/// black.
+double metered_exposure(const NormalisedScene& scene, const RenderOptions& options,
+                        const Watch& watch = {});
+
 }  // namespace penumbra

@@ -1,0 +1,30 @@
+// The commands as the help names them.
+#pragma once
+
+#include "arguments.h"
+
+namespace penumbra::cli {
+
+struct Description {
+    Command command;
+    const char* name;
+    const char* what;
+    const char* example;
+};
+
+inline constexpr Description descriptions[] = {
+    {Command::render, "render", "Render a scene with the native ray tracer",
+     "  penumbra render chair.glb -o chair.png --size 1280x720 --samples 3"},
+    {Command::export_scene, "export", "Write the equivalent POV-Ray 3.7 scene",
+     "  penumbra export chair.glb -o chair.pov && povray chair.ini"},
+    {Command::validate, "validate",
+     "Render with both renderers, compare the pictures and write a report",
+     "  penumbra validate chair.glb --sidecar studio.toml --report chair-report\n"
+     "  penumbra validate --each --jobs 2 scenes/*.toml --report all"},
+    {Command::compare, "compare", "Measure how alike two pictures are",
+     "  penumbra compare ours.exr theirs.png --report difference --profile similar"},
+    {Command::info, "info", "Say what a scene holds and what of it can be reproduced",
+     "  penumbra info chair.glb --json"},
+};
+
+}  // namespace penumbra::cli
