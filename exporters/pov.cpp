@@ -1,15 +1,16 @@
 #include "file.h"
+#include "pov_files.h"
 #include "pov_plan.h"
 #include "sdl.h"
 
 #include "penumbra/exporters.h"
-#include "penumbra/image.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <system_error>
+#include <sstream>
+#include <utility>
 
 namespace penumbra {
 
@@ -31,6 +32,7 @@ struct Writer {
     const PovOptions& options;
     const std::string& stem;
     const Plan& plan;
+    std::string extension = ".pov";  // of the file
     std::string out = {};
 
     void section(const char* title) { out += fmt::format("\n// ---- {} ----\n\n", title); }
@@ -42,22 +44,32 @@ struct Writer {
             out += "//   " + sdl::comment(loss.place + ": " + loss.what, 300) + "\n";
     }
 
-    void header() {
-        out += "#version 3.7;\n\n";
+    void origin() {
         out += "// " + (options.source.empty() ? "A scene" : sdl::comment(options.source, 300)) +
                ", written by penumbra.\n";
         if (!options.command.empty()) out += "//   " + sdl::comment(options.command, 500) + "\n";
+    }
+
+    void all_losses() {
+        Losses approximate = plan.losses;
+        approximate.insert(approximate.begin(), options.losses.begin(), options.losses.end());
+        losses("Not carried over exactly:", approximate);
+    }
+
+    void header() {
+        out += "#version 3.7;\n\n";
+        origin();
         out += fmt::format("//\n// Picture:  {} x {} pixels, ", render.width, render.height);
         out += render.samples > 1 ? fmt::format("a grid of {0} x {0} rays each, ", render.samples)
                                   : std::string("one ray each, ");
-        out += fmt::format("{} along a path\n", plural(std::size_t(render.max_depth), "segment"));
+        out += plural(std::size_t(render.max_depth), "segment") + " along a path";
+        if (render.exposure != 0) out += fmt::format(", exposure {:+g} EV", render.exposure);
+        out += '\n';
         out += fmt::format("// Render:   povray {}.ini     (in this folder)\n", plan.stem);
         if (plan.stem != stem)
             out += fmt::format("//           (the same scene as this file, under a name that "
                                "POV-Ray can open)\n");
-        Losses approximate = plan.losses;
-        approximate.insert(approximate.begin(), options.losses.begin(), options.losses.end());
-        losses("Not carried over exactly:", approximate);
+        all_losses();
     }
 
     void units() {
@@ -72,6 +84,8 @@ struct Writer {
         out += fmt::format("  max_trace_level {}\n", std::min(render.max_depth, 256));
         out += "  adc_bailout 0\n  ambient_light " + sdl::color(scene.scene.ambient) + "\n}\n\n";
         out += "background { " + sdl::color(scene.scene.background) + " }\n";
+        if (!scene.scene.sky) return;
+        out += "sky_sphere {\n  pigment {\n    " + pov::sky_pigment(plan) + "\n  }\n}\n";
     }
 
     void camera() {
@@ -97,6 +111,12 @@ struct Writer {
             }))
             out += "// f_noise_generator of functions.inc\n"
                    "#declare Perlin_noise = function { internal(78) }\n\n";
+        if (std::any_of(plan.looks.begin(), plan.looks.end(), [&](const Look& look) {
+                return scene.scene.materials[look.material].coverage.has_value();
+            }))
+            out += "// where a surface is not there\n"
+                   "#declare Nothing = texture { pigment { rgbt 1 } finish { ambient 0 diffuse 0 } "
+                   "}\n\n";
         for (std::size_t i = 0; i < plan.looks.size(); ++i) {
             if (i > 0) out += '\n';
             const Look& look = plan.looks[i];
@@ -143,13 +163,23 @@ struct Writer {
         return title + ", delta " + number(penumbra.delta) + ")";
     }
 
+    static std::string interior(const Material& m) {
+        const bool bends = m.ior != 1 && (!opaque(m) || m.fresnel);
+        const bool absorbs = m.absorption && !opaque(m);
+        if (!bends && !absorbs && !m.fresnel) return "";
+        std::string text = " interior { ior " + number(m.ior);
+        if (absorbs)
+            text += " fade_distance " + number(float(m.absorption->distance)) +
+                    " fade_power 1001 fade_color " + sdl::color(fade_color(*m.absorption));
+        return text + " }";
+    }
+
     // The material and what else stands in an object, after its transform: patterns in world space
     // must not move with it.
     std::string surface(const Look& look) const {
         const Material& m = scene.scene.materials[look.material];
         std::string text = look.tinted ? "" : " texture { Material_" + look.name + " }";
-        if (m.ior != 1 && m.opacity < 1) text += " interior { ior " + number(m.ior) + " }";
-        return text;
+        return text + interior(m);
     }
 
     void title(const std::string& name) {
@@ -198,71 +228,94 @@ struct Writer {
             "light_group {\n";
         for (const Light& l : scene.scene.lights) light(l);
         out += '\n';
+        objects();
+        out += "}\n";
+    }
+
+    void objects() {
         for (const Instance& i : scene.scene.instances) instance(i);
         for (std::size_t i = 0; i < scene.scene.spheres.size(); ++i)
             sphere(scene.scene.spheres[i], plan.looks[plan.spheres[i]]);
         for (std::size_t i = 0; i < scene.scene.planes.size(); ++i)
             plane(scene.scene.planes[i], plan.looks[plan.planes[i]]);
-        out += "}\n";
+    }
+
+    static bool is_drawn(const pov::MeshPlan& mesh) { return !mesh.name.empty(); }
+
+    std::size_t object_count() const {
+        const auto drawn =
+            std::count_if(scene.scene.instances.begin(), scene.scene.instances.end(),
+                          [&](const Instance& i) { return is_drawn(plan.meshes[i.mesh]); });
+        return std::size_t(drawn) + scene.scene.spheres.size() + scene.scene.planes.size();
+    }
+
+    void geometry() {
+        if (std::none_of(plan.meshes.begin(), plan.meshes.end(), is_drawn)) return;
+        section("geometry");
+        out += "#include \"" + plan.stem + "_geometry.inc\"\n";
     }
 
     std::string text() {
+        if (options.style == PovStyle::include) return include_text();
         header();
         units();
         settings();
         camera();
         materials();
-        const auto drawn = [](const pov::MeshPlan& mesh) { return !mesh.name.empty(); };
-        if (std::any_of(plan.meshes.begin(), plan.meshes.end(), drawn)) {
-            section("geometry");
-            out += "#include \"" + plan.stem + "_geometry.inc\"\n";
-        }
+        geometry();
         world();
         return std::move(out);
     }
-};
 
-std::string ini_text(const RenderOptions& render, const std::string& stem) {
-    std::string out = fmt::format("; Run in this folder: povray {0}.ini\n"
-                                  "Input_File_Name=\"{0}.pov\"\n"
-                                  "Output_File_Name=\"{0}.exr\"\n"
-                                  "Output_File_Type=E\n"
-                                  "Width={1}\n"
-                                  "Height={2}\n",
-                                  stem, render.width, render.height);
-    if (render.samples > 1)
-        out += fmt::format("; every pixel on a fixed grid of {0} x {0} rays\n"
-                           "Antialias=On\n"
-                           "Sampling_Method=1\n"
-                           "Antialias_Threshold=0.0\n"
-                           "Antialias_Depth={0}\n"
-                           "Jitter=Off\n",
-                           render.samples);
-    else
-        out += "Antialias=Off\n";
-    return out + "Display=Off\nPause_When_Done=Off\n";
-}
-
-void make_folder(const fs::path& folder) {
-    std::error_code error;
-    if (fs::create_directory(folder, error) || fs::is_directory(folder)) return;
-    throw Error(Failure::output, folder.string(),
-                "cannot make the folder: " +
-                    (fs::exists(folder) ? "a file of that name is in the way" : error.message()));
-}
-
-// The textures in use; appends their paths to `files`.
-void write_textures(const Plan& plan, const fs::path& folder, std::vector<fs::path>& files) {
-    for (std::size_t i = 0; i < plan.textures.size(); ++i) {
-        const pov::TextureFile& texture = plan.textures[i];
-        if (texture.file.empty()) continue;
-        const fs::path file = folder / texture.file;
-        if (std::find(files.begin(), files.end(), file) != files.end()) continue;
-        make_folder(file.parent_path());
-        save_raster(file, baked(plan.scene->textures[i], texture));
-        files.push_back(file);
+    std::string include_text() {
+        sdl::Names names;
+        for (const char* taken : {"scale", "offset"}) names.unique(taken, "");
+        const std::string name = "Model_" + names.unique(plan.stem, "scene");
+        origin();
+        all_losses();
+        usage(name);
+        out += "\n#local Version_of_caller = version;\n#version 3.7;\n";
+        units();
+        materials();
+        geometry();
+        section("the model");
+        const std::size_t count = object_count();
+        out += "#declare " + name + (count == 1 ? " =\n" : " = union {\n");
+        objects();
+        out += count == 1 ? "\n" : "}\n\n";
+        out += "#version Version_of_caller;\n";
+        return std::move(out);
     }
-}
+
+    // A scene around the model, ready to be copied: its own camera and lights, one source each.
+    void usage(const std::string& name) {
+        const std::string above = std::move(out);
+        out = "#version 3.7;\nglobal_settings { assumed_gamma 1.0";
+        if (scene.scene.ambient != Color(1))
+            out += " ambient_light " + sdl::color(scene.scene.ambient);
+        out += " }\n#include \"" + plan.stem + extension + "\"\n";
+        camera();
+        for (Light l : scene.scene.lights) {
+            l.penumbra.delta = 0;
+            light(l);
+        }
+        out += "object { " + name + " }\n";
+        const std::string example = std::exchange(out, above);
+        out += "//\n// Use it in a scene of your own in this folder, such as:\n//\n";
+        std::istringstream lines(example);
+        for (std::string line; std::getline(lines, line);) {
+            const bool indented = line.starts_with("  light_source") || line.starts_with("  //");
+            out += line.empty() ? "//" : "//   " + line.substr(indented ? 2 : 0);
+            out += '\n';
+        }
+        out += fmt::format("//\n// In the model's own units it is\n"
+                           "//   object {{ {} scale 1/Model_scale translate Model_offset }}\n"
+                           "// The model and this camera are right-handed. Among POV-Ray's usual "
+                           "left-handed things\n"
+                           "// it is mirrored unless turned by scale <1, 1, -1>.\n",
+                           name);
+    }
+};
 
 }  // namespace
 
@@ -274,8 +327,12 @@ std::string pov_text(const NormalisedScene& scene, const RenderOptions& render,
 
 Exported write_pov(const NormalisedScene& scene, const RenderOptions& render, const fs::path& file,
                    const PovOptions& options) {
-    if (file.extension() != ".pov")
-        throw Error(Failure::output, file.string(), "a POV-Ray scene must end in .pov");
+    const bool include = options.style == PovStyle::include;
+    const std::string extension = file.extension().string();
+    if (extension != ".pov" && !(include && extension == ".inc"))
+        throw Error(Failure::output, file.string(),
+                    include ? "an include file of POV-Ray must end in .inc or .pov"
+                            : "a POV-Ray scene must end in .pov");
     const std::string stem = file.stem().string();
     const fs::path folder = file.parent_path();
     const Plan plan = pov::make_plan(scene.scene, render, stem);
@@ -286,15 +343,15 @@ Exported write_pov(const NormalisedScene& scene, const RenderOptions& render, co
         write_file(path, text);
         others.push_back(path);
     };
-    const std::string ini = ini_text(render, plan.stem);
-    const std::string text = Writer{scene, render, options, stem, plan}.text();
+    const std::string ini = include ? "" : pov::ini_text(render, plan.stem);
+    const std::string text = Writer{scene, render, options, stem, plan, extension}.text();
     const std::string geometry = geometry_text(plan);
-    write(folder / (plan.stem + ".ini"), ini);
+    if (!include) write(folder / (plan.stem + ".ini"), ini);
     if (!geometry.empty()) write(folder / (plan.stem + "_geometry.inc"), geometry);
-    write_textures(plan, folder, others);
+    pov::write_textures(plan, folder, others);
     if (plan.stem != stem) {
-        write(folder / (stem + ".ini"), ini);
-        write(folder / (plan.stem + ".pov"), text);
+        if (!include) write(folder / (stem + ".ini"), ini);
+        write(folder / (plan.stem + extension), text);
     }
     write_file(file, text);
 

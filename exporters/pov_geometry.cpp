@@ -78,38 +78,21 @@ std::string tint_name(const MeshPlan& mesh, std::size_t tint) {
     return "Tint_" + mesh.name + "_" + std::to_string(tint + 1);
 }
 
-const Layer& tinted_layer(const std::vector<Layer>& layers) {
-    for (const Layer& layer : layers)
-        if (layer.tinted) return layer;
-    return layers.back();
-}
-
-std::string tinted_texture(const Look& look, const Layer& layer, const Color& tint) {
-    return "texture { pigment " + tinted_pigment(layer, tint) + " finish { " + finish_name(look) +
-           " } }";
-}
-
 // Textures of several layers can only be listed by name.
-void declare_tints(std::string& out, const MeshPlan& mesh, const Look& look,
-                   const std::vector<Layer>& layers) {
-    for (std::size_t i = 0; i < mesh.tints.size(); ++i) {
-        out += "#declare " + tint_name(mesh, i) + " =";
-        if (!layers.front().tinted) out += " texture { " + below_name(look) + " }";
-        out += " " + tinted_texture(look, tinted_layer(layers), mesh.tints[i]);
-        if (!layers.back().tinted) out += " texture { " + above_name(look) + " }";
-        out += '\n';
-    }
+void append_texture_list(std::string& out, const Plan& plan, const MeshPlan& mesh,
+                         const Look& look) {
+    const bool single = is_single(plan, look);
+    out += "  texture_list { " + std::to_string(mesh.tints.size());
+    for (std::size_t i = 0; i < mesh.tints.size(); ++i)
+        out += ",\n    texture { " +
+               (single ? single_texture(plan, look, mesh.tints[i]) : tint_name(mesh, i)) + " }";
+    out += "\n  }\n";
 }
 
-void append_texture_list(std::string& out, const MeshPlan& mesh, const Look& look,
-                         const std::vector<Layer>& layers) {
-    out += "  texture_list { " + std::to_string(mesh.tints.size());
-    for (std::size_t i = 0; i < mesh.tints.size(); ++i) {
-        out += ",\n    ";
-        out += layers.size() > 1 ? "texture { " + tint_name(mesh, i) + " }"
-                                 : tinted_texture(look, layers[0], mesh.tints[i]);
-    }
-    out += "\n  }\n";
+void declare_tints(std::string& out, const Plan& plan, const MeshPlan& mesh, const Look& look) {
+    if (is_single(plan, look)) return;
+    for (std::size_t i = 0; i < mesh.tints.size(); ++i)
+        out += texture_declaration(plan, look, tint_name(mesh, i), &mesh.tints[i]);
 }
 
 void append_faces(std::string& out, const Mesh& mesh, const MeshPlan& plan) {
@@ -138,19 +121,15 @@ void append_mesh(std::string& out, const Plan& plan, std::size_t index) {
     const Mesh& mesh = plan.scene->meshes[index];
     const MeshPlan& mesh_plan = plan.meshes[index];
     const Look& look = plan.looks[mesh_plan.look];
-    std::vector<Layer> layers;
     out += '\n';
-    if (look.tinted) {
-        layers = layers_of(plan, look);
-        if (layers.size() > 1) declare_tints(out, mesh_plan, look, layers);
-    }
+    if (look.tinted) declare_tints(out, plan, mesh_plan, look);
     out += "#declare Mesh_" + mesh_plan.name + " = mesh2 {";
     if (mesh.name != mesh_plan.name && !mesh.name.empty()) out += "  // " + sdl::comment(mesh.name);
     out += '\n';
     append_vectors(out, "vertex_vectors", mesh.positions);
     if (mesh_plan.normals) append_normals(out, mesh.normals);
     if (mesh_plan.texcoords) append_texcoords(out, mesh.texcoords);
-    if (look.tinted) append_texture_list(out, mesh_plan, look, layers);
+    if (look.tinted) append_texture_list(out, plan, mesh_plan, look);
     append_faces(out, mesh, mesh_plan);
     out += "  inside_vector <0.1, 1, 0.05>\n}\n";
 }

@@ -4,13 +4,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace penumbra::pov {
 
 namespace {
 
-using sdl::color;
 using sdl::number;
 
 const Color black(0), white(1);
@@ -33,6 +33,21 @@ std::string matrix(const Vec3& x, const Vec3& y, const Vec3& z, const Vec3& move
     return "matrix <" + out + ">";
 }
 
+// POV-Ray moves the pattern and not the lookup.
+std::string inverse_lookup(const std::array<double, 6>& t) {
+    const double scale = 1 / (t[0] * t[4] - t[1] * t[3]);
+    const double a = t[4] * scale, b = -t[1] * scale, c = -t[3] * scale, d = t[0] * scale;
+    return matrix({a, c, 0}, {b, d, 0}, {0, 0, 1},
+                  {-(a * t[2] + b * t[5]), -(c * t[2] + d * t[5]), 0});
+}
+
+// "rgb ...", "rgbt ..." or "rgbft ..."
+std::string color(const Color& c, const Passing& passing) {
+    if (passing.filter == 0) return sdl::color(c, passing.transmit);
+    return fmt::format("rgbft <{}, {}, {}, {}, {}>", number(c.x), number(c.y), number(c.z),
+                       number(passing.filter), number(passing.transmit));
+}
+
 // Where the image lies. POV-Ray's image fills the unit square of x and y, or of u and v.
 std::string image_placement(const Plan& plan, const Look& look, const ImageMap& map) {
     const TextureFile& file = plan.textures[map.texture];
@@ -47,20 +62,34 @@ std::string image_placement(const Plan& plan, const Look& look, const ImageMap& 
         const PlaneFrame& f = look.frame;
         out += "\n    " + matrix(f.u * map.size, f.v * map.size, f.normal * map.size, f.origin);
     }
+    if (look.surface == Look::Surface::mesh && map.transform != ImageMap{}.transform)
+        out += "\n    " + inverse_lookup(map.transform);
     return out;
 }
 
-std::string image_pigment(const Plan& plan, const Look& look, const ImageMap& map, float transmit) {
+// "png "file.png" gamma srgb interpolate 2", as it stands in image_map and image_pattern.
+std::string image_file(const Plan& plan, const ImageMap& map) {
     const Texture& texture = plan.scene->textures[map.texture];
     const std::string& file = plan.textures[map.texture].file;
     const bool floats = texture.raster.depth == Depth::f32;
+    return fmt::format("{} \"{}\" gamma {}{}", floats ? "exr" : "png", file,
+                       texture.srgb && !floats ? "srgb" : "1.0",
+                       texture.bilinear ? " interpolate 2" : "");
+}
+
+std::string image_map(const Plan& plan, const Look& look, const ImageMap& map,
+                      const Passing& passing) {
     std::string out = look.surface == Look::Surface::plane ? "" : "uv_mapping ";
-    out += fmt::format("image_map {{ {} \"{}\" gamma {}", floats ? "exr" : "png", file,
-                       texture.srgb && !floats ? "srgb" : "1.0");
-    if (texture.bilinear) out += " interpolate 2";
-    if (transmit != 0) out += " transmit all " + number(transmit);
-    out += " }" + image_placement(plan, look, map);
-    if (plan.scene->materials[look.material].opacity == 1) return out;
+    out += "image_map { " + image_file(plan, map);
+    if (passing.filter != 0) out += " filter all " + number(passing.filter);
+    if (passing.transmit != 0) out += " transmit all " + number(passing.transmit);
+    return out + " }" + image_placement(plan, look, map);
+}
+
+std::string image_pigment(const Plan& plan, const Look& look, const ImageMap& map,
+                          const Passing& passing) {
+    const std::string out = image_map(plan, look, map, passing);
+    if (passing.none()) return out;
     // POV-Ray takes whatever wears an opaque image for opaque when it looks for shadows, `transmit
     // all` or not (source/backend/support/imageutil.cpp, is_image_opaque).
     return "average pigment_map {  // the entry without weight makes shadows translucent\n      "
@@ -68,9 +97,9 @@ std::string image_pigment(const Plan& plan, const Look& look, const ImageMap& ma
            out + "]\n      [0 rgbt 1]\n    }";
 }
 
-std::string checker_pigment(const Checker& checker, float transmit) {
-    return "checker " + color(checker.colors[0], transmit) + ", " +
-           color(checker.colors[1], transmit) + scale_and_move(Vec3(checker.size), checker.origin);
+std::string checker_pigment(const Checker& checker, const Passing& passing) {
+    return "checker " + color(checker.colors[0], passing) + ", " +
+           color(checker.colors[1], passing) + scale_and_move(Vec3(checker.size), checker.origin);
 }
 
 // sum of noise(2^i p) / 2^i, divided by the sum of the weights
@@ -85,23 +114,29 @@ std::string noise_function(int octaves) {
     return fmt::format("function {{ ({})/{} }}", sum, number(weight));
 }
 
-std::string noise_pigment(const Noise& noise, float transmit) {
+std::string noise_pigment(const Noise& noise, const Passing& passing) {
     const std::string pattern =
         noise.octaves == 1 ? "bozo noise_generator 3" : noise_function(noise.octaves);
-    return pattern + "\n    color_map { [0 " + color(noise.colors[0], transmit) + "] [1 " +
-           color(noise.colors[1], transmit) + "] }" +
-           scale_and_move(Vec3(noise.size), noise.origin);
+    return pattern + "\n    color_map { [0 " + color(noise.colors[0], passing) + "] [1 " +
+           color(noise.colors[1], passing) + "] }" + scale_and_move(Vec3(noise.size), noise.origin);
 }
 
-std::string pigment(const Plan& plan, const Look& look, float transmit) {
+std::string pigment(const Plan& plan, const Look& look, const Passing& passing) {
     const Material& material = plan.scene->materials[look.material];
     if (const auto* map = std::get_if<ImageMap>(&material.pattern))
-        return image_pigment(plan, look, *map, transmit);
+        return image_pigment(plan, look, *map, passing);
     if (const auto* checker = std::get_if<Checker>(&material.pattern))
-        return checker_pigment(*checker, transmit);
+        return checker_pigment(*checker, passing);
     if (const auto* noise = std::get_if<Noise>(&material.pattern))
-        return noise_pigment(*noise, transmit);
-    return color(material.color, transmit);
+        return noise_pigment(*noise, passing);
+    return color(material.color, passing);
+}
+
+Passing passing_of(const Material& m) {
+    const double through = 1 - double(m.opacity);
+    return {.filter = float(through * double(m.transmission)),
+            .transmit = m.transmission == 0 ? 1 - m.opacity
+                                            : float(through * (1 - double(m.transmission)))};
 }
 
 // Without ambient, diffuse and emission: what does not depend on the opacity.
@@ -110,7 +145,8 @@ Finish gloss_of(const Material& m) {
             .phong_size = m.shininess,
             .metallic = m.metallic,
             .reflection = m.reflection,
-            .reflection_metallic = m.metallic};
+            .reflection_metallic = m.metallic,
+            .fresnel = m.fresnel};
 }
 
 Finish finish_of(const Material& m) {
@@ -130,93 +166,82 @@ bool divide_emission(const Color& pigment, const Color& emission, Color& quotien
     return true;
 }
 
-// Two layers share a surface of opacity a = 1 - T so that each shows half of it: the upper one has
-// opacity a/2, the lower one (a/2) / (1 - a/2), and together they transmit 1 - a. Doubling a
-// layer's terms makes up for its half.
-struct Halves {
-    float upper, lower;  ///< transmit
-    explicit Halves(float opacity)
-        : upper(float(1 - double(opacity) / 2)),
-          lower(float((1 - double(opacity)) / (1 - double(opacity) / 2))) {}
-};
+// A layer that only adds light: all but transparent, and emitting the more for it. The layers below
+// lose a millionth.
+constexpr float veil = 1 / 1048576.0F;
 
-Finish doubled(Finish finish) {
-    finish.ambient *= 2;
-    finish.diffuse *= 2;
-    return finish;
+Layer glow(const Material& m) {
+    return {.pigment = color(white, {.transmit = 1 - veil}),
+            .finish = {.emission = m.emission * (m.opacity / veil)},
+            .adds_light = true};
 }
 
-// Emission that does not take the pigment's colour: a white layer that emits.
-Layer glow(const Material& m, float transmit) {
-    return {.pigment = color(white, transmit), .finish = {.emission = m.emission * 2.0F}};
+Layer image_glow(const Plan& plan, const Look& look, const Material& m) {
+    return {.pigment = image_map(plan, look, *m.emission_map, {.transmit = 1 - veil}),
+            .finish = {.emission = m.emission / veil},
+            .adds_light = true};
 }
 
 // A surface whose pigment is one of POV-Ray's own.
-std::vector<Layer> simple_layers(const Plan& plan, const Look& look, const Material& m) {
-    const float transmit = 1 - m.opacity;
-    const auto layer = [&](float through, const Finish& finish) {
-        return Layer{.pigment = look.tinted ? "" : pigment(plan, look, through),
-                     .finish = finish,
-                     .tinted = look.tinted,
-                     .transmit = through};
+void add_simple_layers(const Plan& plan, const Look& look, const Material& m,
+                       std::vector<Layer>& layers) {
+    const Passing passing = passing_of(m);
+    const auto add = [&](const Finish& finish) {
+        layers.push_back({.pigment = look.tinted ? "" : pigment(plan, look, passing),
+                          .finish = finish,
+                          .tinted = look.tinted,
+                          .passing = passing});
     };
     Finish finish = finish_of(m);
-    if (m.emission == black || m.opacity == 0) return {layer(transmit, finish)};
+    if (m.emission == black || m.emission_map || m.opacity == 0) return add(finish);
     if (std::holds_alternative<std::monostate>(m.pattern) && !look.tinted) {
-        if (divide_emission(m.color, m.emission, finish.emission)) return {layer(transmit, finish)};
+        if (divide_emission(m.color, m.emission, finish.emission)) return add(finish);
         const bool unseen = m.color == black || (m.ambient == black && m.diffuse == 0);
-        if (unseen && m.metallic == 0) {
+        if (unseen && m.metallic == 0 && m.transmission == 0) {
             finish = gloss_of(m);
             finish.emission = m.emission;
-            return {{.pigment = color(white, transmit), .finish = finish}};
+            layers.push_back({.pigment = color(white, passing), .finish = finish});
+            return;
         }
     }
-    const Halves halves(m.opacity);
-    return {glow(m, halves.lower), layer(halves.upper, doubled(finish_of(m)))};
-}
-
-// Splits the gloss of a metal whose pigment is a product: no layer's pigment is the product, but
-// the highlight of the image's layer, filtered by the tint above it, takes both colours.
-void tint_gloss(const Material& m, Finish& image, float image_weight, Finish& top) {
-    image.phong = m.specular * m.metallic / image_weight;
-    image.phong_size = m.shininess;
-    image.metallic = 1;
-    image.reflection = m.reflection;
-    image.reflection_metallic = m.metallic;
-    top.phong = m.specular * (1 - m.metallic);
-    top.metallic = 0;
-    top.reflection = black;
+    add(finish_of(m));
+    layers.push_back(glow(m));
 }
 
 // An image times a colour: the colour is a filter over the image.
-std::vector<Layer> product_layers(const Plan& plan, const Look& look, const Material& m) {
-    const bool glows = m.emission != black && m.opacity != 0;
-    const Halves halves(m.opacity);
-    const float through = glows ? halves.lower : 1 - m.opacity;
-    Layer image{.pigment = pigment(plan, look, through)};
+void add_product_layers(const Plan& plan, const Look& look, const Material& m,
+                        std::vector<Layer>& layers) {
+    Layer image{.pigment = pigment(plan, look, passing_of(m))};
     image.finish.ambient = m.ambient;
     image.finish.diffuse = m.diffuse;
-    if (glows) image.finish = doubled(image.finish);
-    Finish top = gloss_of(m);
-    if (m.metallic > 0) tint_gloss(m, image.finish, glows ? halves.upper : 1, top);
-    Layer filter{.pigment = fmt::format("rgbf <{}, {}, {}, 1>", number(m.color.x),
-                                        number(m.color.y), number(m.color.z)),
-                 .tinted = look.tinted,
-                 .filter = true};
-    if (!glows) {
-        filter.finish = top;
-        return {image, filter};
-    }
-    Layer light = glow(m, halves.upper);
-    top.emission = light.finish.emission;
-    light.finish = top;
-    return {image, filter, light};
+    layers.push_back(image);
+    layers.push_back({.pigment = fmt::format("rgbf <{}, {}, {}, 1>", number(m.color.x),
+                                             number(m.color.y), number(m.color.z)),
+                      .finish = m.metallic > 0 ? Finish{} : gloss_of(m),
+                      .tinted = look.tinted,
+                      .filter = true});
+    // The highlight of a metal takes the colour of the image, which needs a layer of its own.
+    if (m.metallic > 0)
+        layers.push_back(
+            {.pigment = image_pigment(plan, look, *std::get_if<ImageMap>(&m.pattern), {.transmit = 1}),
+             .finish = gloss_of(m)});
+    if (m.emission != black && !m.emission_map && m.opacity != 0) layers.push_back(glow(m));
+}
+
+// Highlight and mirror in a colour of their own: a transparent layer that wears that colour.
+Layer gloss_layer(const Plan& plan, const Look& look, const Material& m, const Lobe& lobe) {
+    Material shown = m;
+    shown.specular = lobe.specular;
+    shown.shininess = lobe.shininess;
+    shown.reflection = lobe.reflection;
+    return {.pigment = image_map(plan, look, m.gloss->color, {.transmit = 1}),
+            .finish = gloss_of(shown)};
 }
 
 // "ambient 0.1" is what people write for "ambient rgb 0.1".
 std::string item(const char* name, const Color& c) {
     const bool grey = c.x == c.y && c.y == c.z;
-    return fmt::format("{} {}", name, grey ? number(c.x) : color(c));
+    return fmt::format("{} {}", name, grey ? number(c.x) : sdl::color(c));
 }
 
 std::string finish_text(const Finish& f, const char* indent) {
@@ -224,7 +249,8 @@ std::string finish_text(const Finish& f, const char* indent) {
     if (f.metallic != 0) phong += " metallic " + number(f.metallic);
     std::string reflection = "reflection 0";
     if (f.reflection != black) {
-        reflection = "reflection { " + color(f.reflection);
+        reflection = "reflection { " + std::string(f.fresnel ? "rgb 0, " : "") +
+                     sdl::color(f.reflection) + (f.fresnel ? " fresnel on" : "");
         if (f.reflection_metallic != 0) reflection += " metallic " + number(f.reflection_metallic);
         reflection += " }";
     }
@@ -234,46 +260,151 @@ std::string finish_text(const Finish& f, const char* indent) {
 }
 
 std::string texture_text(const Layer& layer) {
-    return "texture {\n  pigment { " + layer.pigment + " }\n  " + finish_text(layer.finish, "  ") +
-           "\n}\n";
+    return fmt::format("texture {{{}\n  pigment {{ ",
+                       layer.adds_light
+                           ? "  // adds light: emits the more for being all but transparent"
+                           : "") +
+           layer.pigment + " }\n  " + finish_text(layer.finish, "  ") + "\n}\n";
 }
 
-std::string tinted_look_text(const Look& look, const std::vector<Layer>& layers) {
-    std::string out;
-    bool above = false;
-    for (const Layer& layer : layers) {
-        const std::string name = layer.tinted ? finish_name(look)
-                                 : above      ? above_name(look)
-                                              : below_name(look);
-        out += "#declare " + name + " = " +
-               (layer.tinted ? finish_text(layer.finish, "") + "\n" : texture_text(layer));
-        above = above || layer.tinted;
+std::string tinted_pigment(const Layer& layer, const Color& tint) {
+    if (!layer.filter) return color(tint, layer.passing);
+    return fmt::format("rgbf <{}, {}, {}, 1>", number(tint.x), number(tint.y), number(tint.z));
+}
+
+std::size_t lobe_count(const Material& m) {
+    return m.gloss && m.gloss->level.texture != no_index ? m.gloss->lobes.size() : 1;
+}
+
+// What the identifier of one layer of a tinted look ends in. Names of materials have no two
+// underscores in a row.
+std::string part_name(const Plan& plan, const Look& look, std::size_t lobe, std::size_t layer,
+                      std::size_t layers) {
+    std::string name = look.name;
+    if (lobe_count(plan.scene->materials[look.material]) > 1)
+        name += fmt::format("__lobe{}", lobe + 1);
+    if (layers > 1) name += fmt::format("__{}", layer + 1);
+    return name;
+}
+
+// What the tints of a look have in common: the finishes of their layers, and whole layers.
+std::string shared_parts(const Plan& plan, const Look& look) {
+    std::string out = "// pigments: the vertex colours in the geometry\n";
+    for (std::size_t k = 0; k < lobe_count(plan.scene->materials[look.material]); ++k) {
+        const std::vector<Layer> layers = layers_of(plan, look, k);
+        for (std::size_t i = 0; i < layers.size(); ++i) {
+            const std::string name = part_name(plan, look, k, i, layers.size());
+            out += layers[i].tinted ? "#declare Finish_" + name + " = " +
+                                          finish_text(layers[i].finish, "") + "\n"
+                                    : "#declare Layer_" + name + " =\n" + texture_text(layers[i]);
+        }
     }
+    return out;
+}
+
+// The layers of a tint, from those parts.
+std::string tinted_layers(const Plan& plan, const Look& look, std::size_t lobe, const Color& tint) {
+    const std::vector<Layer> layers = layers_of(plan, look, lobe);
+    std::string out;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        const std::string name = part_name(plan, look, lobe, i, layers.size());
+        out += layers[i].tinted
+                   ? fmt::format("texture {{ pigment {{ {} }} finish {{ Finish_{} }} }}",
+                                 tinted_pigment(layers[i], tint), name)
+                   : "texture { Layer_" + name + " }";
+        out += '\n';
+    }
+    return out;
+}
+
+// A texture that shows another one for every value of an image's first channel.
+std::string pattern_text(const Plan& plan, const Look& look, const ImageMap& map,
+                         const std::string& entries) {
+    return "texture {\n  uv_mapping image_pattern { " + image_file(plan, map) + " }\n  " +
+           "texture_map { " + entries + " }" + image_placement(plan, look, map) + "\n}\n";
+}
+
+// Declares the textures of the look's lobes and, as `name`, their mixture.
+std::string declare_lobes(const Plan& plan, const Look& look, const std::string& name,
+                          const Color* tint) {
+    const Material& m = plan.scene->materials[look.material];
+    const std::size_t count = lobe_count(m);
+    std::string out, entries;
+    for (std::size_t k = 0; k < count; ++k) {
+        const std::string part = count == 1 ? name : fmt::format("{}__lobe{}", name, k + 1);
+        out += "#declare " + part + " =\n";
+        if (tint != nullptr)
+            out += tinted_layers(plan, look, k, *tint);
+        else
+            for (const Layer& layer : layers_of(plan, look, k)) out += texture_text(layer);
+        entries +=
+            fmt::format("{}[{} {}]", k == 0 ? "" : " ",
+                        number(double(k) / double(std::max<std::size_t>(1, count - 1))), part);
+    }
+    if (count > 1)
+        out += "#declare " + name + " =\n" + pattern_text(plan, look, m.gloss->level, entries);
     return out;
 }
 
 }  // namespace
 
-std::vector<Layer> layers_of(const Plan& plan, const Look& look) {
-    const Material& m = plan.scene->materials[look.material];
+std::vector<Layer> layers_of(const Plan& plan, const Look& look, std::size_t lobe) {
+    Material m = plan.scene->materials[look.material];
+    const bool mesh = look.surface == Look::Surface::mesh;
+    const bool gloss = m.gloss && mesh;
+    const bool own_color = gloss && m.gloss->color.texture != no_index;
+    if (gloss) {
+        const Lobe shown = own_color ? Lobe{} : m.gloss->lobes[lobe];
+        m.specular = shown.specular;
+        m.shininess = shown.shininess;
+        m.reflection = shown.reflection;
+    }
+    if (!mesh) m.emission_map.reset();
     const bool image = std::holds_alternative<ImageMap>(m.pattern);
-    if (image && (look.tinted || m.color != white)) return product_layers(plan, look, m);
-    return simple_layers(plan, look, m);
+    std::vector<Layer> layers;
+    if (image && (look.tinted || m.color != white))
+        add_product_layers(plan, look, m, layers);
+    else
+        add_simple_layers(plan, look, m, layers);
+    if (m.emission_map && m.emission != black) layers.push_back(image_glow(plan, look, m));
+    if (own_color) layers.push_back(gloss_layer(plan, look, m, m.gloss->lobes[lobe]));
+    return layers;
 }
 
-std::string tinted_pigment(const Layer& layer, const Color& tint) {
-    if (!layer.filter) return "{ " + color(tint, layer.transmit) + " }";
-    return fmt::format("{{ rgbf <{}, {}, {}, 1> }}", number(tint.x), number(tint.y),
-                       number(tint.z));
+std::string texture_declaration(const Plan& plan, const Look& look, const std::string& name,
+                                const Color* tint) {
+    const Material& m = plan.scene->materials[look.material];
+    if (!m.coverage || look.surface != Look::Surface::mesh)
+        return declare_lobes(plan, look, name, tint);
+    const std::string there = name + "__there";
+    const Coverage& coverage = *m.coverage;
+    const double from = coverage.cutoff ? cutoff_threshold(*coverage.cutoff) : 0;
+    const double to = coverage.cutoff ? from : 1;
+    return declare_lobes(plan, look, there, tint) + "#declare " + name + " =\n" +
+           pattern_text(plan, look, coverage.map,
+                        fmt::format("[{} Nothing] [{} {}]", number(from), number(to), there));
+}
+
+std::string sky_pigment(const Plan& plan) {
+    // POV-Ray's image begins in +x and runs towards +z; ours has its middle in -z.
+    const ImageMap map{.texture = plan.scene->sky->texture};
+    return "image_map { " + image_file(plan, map) + " map_type 1 }\n    " +
+           matrix({0, 0, 1}, {0, 1, 0}, {-1, 0, 0}, Vec3(0));
+}
+
+bool is_single(const Plan& plan, const Look& look) {
+    const Material& m = plan.scene->materials[look.material];
+    return lobe_count(m) == 1 && !m.coverage && layers_of(plan, look).size() == 1;
+}
+
+std::string single_texture(const Plan& plan, const Look& look, const Color& tint) {
+    return fmt::format("pigment {{ {} }} finish {{ Finish_{} }}",
+                       tinted_pigment(layers_of(plan, look)[0], tint), look.name);
 }
 
 std::string look_text(const Plan& plan, const Look& look) {
-    const std::vector<Layer> layers = layers_of(plan, look);
-    if (look.tinted)
-        return "// pigments: the vertex colours in the geometry\n" + tinted_look_text(look, layers);
-    std::string out = "#declare Material_" + look.name + " =\n";
-    for (const Layer& layer : layers) out += texture_text(layer);
-    return out;
+    if (look.tinted) return shared_parts(plan, look);
+    return texture_declaration(plan, look, "Material_" + look.name, nullptr);
 }
 
 }  // namespace penumbra::pov

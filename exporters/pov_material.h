@@ -14,26 +14,37 @@ struct Finish {
     float diffuse = 0, phong = 0, phong_size = 40, metallic = 0;
     Color reflection = Color(0);
     float reflection_metallic = 0;
+    bool fresnel = false;
+};
+
+/// The light that a pigment lets through: in its own colour, and as it is.
+struct Passing {
+    float filter = 0, transmit = 0;
+    bool none() const { return filter == 0 && transmit == 0; }
 };
 
 /// One of a stack of textures. Upper layers let a part of the lower ones through.
 struct Layer {
     std::string pigment = {};  ///< what stands in pigment { }; of a tinted layer made for each tint
     Finish finish = {};
-    bool tinted = false;  ///< the pigment is a vertex colour ...
-    bool filter = false;  ///< ... that multiplies the layers below it
-    float transmit = 0;   ///< of the tinted pigment
+    bool tinted = false;      ///< the pigment is a vertex colour ...
+    bool filter = false;      ///< ... that multiplies the layers below it
+    bool adds_light = false;  ///< and changes nothing else
+    Passing passing = {};     ///< of the tinted pigment
 };
 
-/// The layers of a look, lowest first.
-std::vector<Layer> layers_of(const Plan& plan, const Look& look);
+/// The layers of a look that shows gloss lobe `lobe`, lowest first.
+std::vector<Layer> layers_of(const Plan& plan, const Look& look, std::size_t lobe = 0);
 
-/// "{ rgb ... }" of a tinted layer.
-std::string tinted_pigment(const Layer& layer, const Color& tint);
+/// Declarations that end in that of `name`, the look's texture; `tint` is the vertex colour (times
+/// Material::color) of a tinted look.
+std::string texture_declaration(const Plan& plan, const Look& look, const std::string& name,
+                                const Color* tint);
 
-/// The identifiers of a tinted look: the finish of its tinted layer, the layer below and above it.
-inline std::string finish_name(const Look& look) { return "Finish_" + look.name; }
-inline std::string below_name(const Look& look) { return "Below_" + look.name; }
-inline std::string above_name(const Look& look) { return "Above_" + look.name; }
+/// Can the look's texture stand in a list without a name?
+bool is_single(const Plan& plan, const Look& look);
+
+/// The pigment and finish of a single look of vertex colour `tint`, as it stands in texture { }.
+std::string single_texture(const Plan& plan, const Look& look, const Color& tint);
 
 }  // namespace penumbra::pov

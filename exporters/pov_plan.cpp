@@ -38,6 +38,23 @@ const ImageMap* image_of(const Material& material) {
     return std::get_if<ImageMap>(&material.pattern);
 }
 
+// All images that a material shows.
+std::vector<const ImageMap*> maps_of(const Material& material, bool mesh) {
+    std::vector<const ImageMap*> maps;
+    const auto add = [&](const ImageMap& map) {
+        if (map.texture != no_index) maps.push_back(&map);
+    };
+    if (const ImageMap* image = image_of(material)) add(*image);
+    if (!mesh) return maps;
+    if (material.coverage) add(material.coverage->map);
+    if (material.emission_map) add(*material.emission_map);
+    if (material.gloss) {
+        add(material.gloss->color);
+        add(material.gloss->level);
+    }
+    return maps;
+}
+
 bool plain(const Material& material) {
     return std::holds_alternative<std::monostate>(material.pattern);
 }
@@ -83,7 +100,8 @@ struct Planner {
     }
 
     Index look_of(Index material, Look::Surface surface, bool tinted = false) {
-        if (image_of(scene.materials[material]) == nullptr) surface = Look::Surface::any;
+        const bool mesh = surface == Look::Surface::mesh;
+        if (maps_of(scene.materials[material], mesh).empty()) surface = Look::Surface::any;
         const auto [entry, added] = known.try_emplace({material, surface, tinted}, Index(0));
         if (added)
             entry->second = add_look({.material = material, .surface = surface, .tinted = tinted});
@@ -98,13 +116,29 @@ struct Planner {
                          .frame = plane_frame(plane)});
     }
 
-    void use_image(const Material& material, const std::array<Range, 2>& part) {
-        const ImageMap* image = image_of(material);
-        if (image == nullptr) return;
+    void use_texture(Index texture, const std::array<Range, 2>& part) {
         for (std::size_t axis = 0; axis < 2; ++axis) {
-            ranges[image->texture][axis].extend(part[axis].min);
-            ranges[image->texture][axis].extend(part[axis].max);
+            ranges[texture][axis].extend(part[axis].min);
+            ranges[texture][axis].extend(part[axis].max);
         }
+    }
+
+    void use_image(const Material& material, const std::array<Range, 2>& part) {
+        if (const ImageMap* image = image_of(material)) use_texture(image->texture, part);
+    }
+
+    // The part of the image that the mesh looks up.
+    void use_map(const ImageMap& map, const Mesh& mesh) {
+        std::array<Range, 2> part;
+        const auto& t = map.transform;
+        for (const auto& triangle : mesh.triangles) {
+            for (const Index corner : triangle) {
+                const Vec2 uv = mesh.texcoords.empty() ? Vec2(0) : Vec2(mesh.texcoords[corner]);
+                part[0].extend(t[0] * uv.x + t[1] * uv.y + t[2]);
+                part[1].extend(t[3] * uv.x + t[4] * uv.y + t[5]);
+            }
+        }
+        use_texture(map.texture, part);
     }
 
     void find_tints(const Mesh& mesh, MeshPlan& out) {
@@ -128,17 +162,10 @@ struct Planner {
         out.name = mesh_names.unique(mesh.name, std::to_string(&mesh - scene.meshes.data() + 1));
         out.look = look_of(mesh.material, Look::Surface::mesh, tinted);
         out.normals = material.smooth && !mesh.normals.empty();
-        out.texcoords = image && !mesh.texcoords.empty();
+        const std::vector<const ImageMap*> maps = maps_of(material, true);
+        out.texcoords = !maps.empty() && !mesh.texcoords.empty();
         if (tinted) find_tints(mesh, out);
-        if (!image) return;
-        std::array<Range, 2> part;
-        for (const auto& triangle : mesh.triangles) {
-            for (const Index corner : triangle) {
-                part[0].extend(out.texcoords ? double(mesh.texcoords[corner].x) : 0);
-                part[1].extend(out.texcoords ? double(mesh.texcoords[corner].y) : 0);
-            }
-        }
-        use_image(material, part);
+        for (const ImageMap* map : maps) use_map(*map, mesh);
     }
 
     void add_objects() {
@@ -236,9 +263,12 @@ struct Planner {
         for (const Look& look : plan.looks) {
             const Material& m = scene.materials[look.material];
             const bool product = image_of(m) != nullptr && (look.tinted || m.color != Color(1));
-            if (product && m.metallic > 0)
-                lose({m.name, "the metallic tint of texture times vertex colours "
-                              "is approximate: reflections take the texture's"});
+            const bool own_tint = m.gloss && m.gloss->color.texture != no_index;
+            if (m.normal_map)
+                lose({m.name, "its normal map is dropped: POV-Ray has none in tangent space"});
+            if (product && m.metallic > 0 && !own_tint)
+                lose({m.name, "highlights and reflections of the textured metal take no "
+                              "vertex colours: approximate"});
             if (product && m.opacity < 1)
                 lose({m.name, "vertex colours over a translucent texture also "
                               "tint what lies behind"});
@@ -284,6 +314,7 @@ Plan make_plan(const Scene& scene, const RenderOptions& render, const std::strin
     planner.plan.textures.resize(scene.textures.size());
     planner.ranges.resize(scene.textures.size());
     planner.add_objects();
+    if (scene.sky) planner.use_texture(scene.sky->texture, {Range{0, 1}, Range{0, 1}});
     for (std::size_t i = 0; i < scene.textures.size(); ++i)
         if (planner.ranges[i][0].min <= planner.ranges[i][0].max)
             planner.add_texture(scene.textures[i], planner.ranges[i], planner.plan.textures[i]);

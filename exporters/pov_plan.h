@@ -69,7 +69,10 @@ Raster baked(const Texture& texture, const TextureFile& file);
 /// FILE_geometry.inc; empty when the scene has no meshes.
 std::string geometry_text(const Plan& plan);
 
-/// The declaration of a look, the textures it needs included.
+/// The pigment of Scene::sky.
+std::string sky_pigment(const Plan& plan);
+
+/// The declaration of a look, the textures it needs included; of a tinted one what its tints share.
 std::string look_text(const Plan& plan, const Look& look);
 
 }  // namespace penumbra::pov

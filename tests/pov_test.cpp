@@ -295,8 +295,8 @@ TEST_CASE("export, names what POV-Ray cannot do") {
     const Losses losses = pov::make_plan(scene, render, "scene").losses;
     const Losses expected = {
         {"oak", "the clamped image is used so far outside of its edges that it is repeated there"},
-        {"wood", "the metallic tint of texture times vertex colours is approximate: reflections "
-                 "take the texture's"},
+        {"wood", "highlights and reflections of the textured metal take no vertex colours: "
+                 "approximate"},
         {"wood", "vertex colours over a translucent texture also tint what lies behind"},
         {"max_depth", "POV-Ray follows at most 256 ray segments"},
         {"samples", "POV-Ray's grid has at most 9 x 9 samples"}};

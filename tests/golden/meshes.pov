@@ -49,7 +49,8 @@ texture {
 
 // wood
 // pigments: the vertex colours in the geometry
-#declare Below_wood_tinted = texture {
+#declare Layer_wood_tinted__1 =
+texture {
   pigment { uv_mapping image_map { png "meshes_textures/oak.png" gamma srgb interpolate 2 } scale <2, 1, 1> }
   finish {
     ambient 0.1 emission 0 diffuse 0.7
@@ -57,7 +58,7 @@ texture {
     reflection 0
   }
 }
-#declare Finish_wood_tinted = finish {
+#declare Finish_wood_tinted__2 = finish {
   ambient 0 emission 0 diffuse 0
   phong 0.3 phong_size 40
   reflection 0

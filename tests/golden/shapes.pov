@@ -59,18 +59,18 @@ texture {
 // lamp shade
 #declare Material_lamp_shade =
 texture {
-  pigment { rgb 1 }
+  pigment { rgb <1, 0, 0.5> }
   finish {
-    ambient 0 emission rgb <1, 0.5, 0> diffuse 0
-    phong 0 phong_size 40
+    ambient 0.1 emission 0 diffuse 0.7
+    phong 0.3 phong_size 40
     reflection 0
   }
 }
-texture {
-  pigment { rgbt <1, 0, 0.5, 0.5> }
+texture {  // adds light: emits the more for being all but transparent
+  pigment { rgbt <1, 1, 1, 0.99999905> }
   finish {
-    ambient 0.2 emission 0 diffuse 1.4
-    phong 0.3 phong_size 40
+    ambient 0 emission rgb <524288, 262144, 0> diffuse 0
+    phong 0 phong_size 40
     reflection 0
   }
 }
