@@ -1,5 +1,6 @@
 #include "file.h"
 #include "obj.h"
+#include "texels.h"
 
 #include <fmt/format.h>
 
@@ -26,14 +27,14 @@ constexpr auto options = std::to_array<Option>({
     {"-blendu", 1, "on"},
     {"-blendv", 1, "on"},
     {"-boost", 1},
-    {"-mm", 2, "0 1"},
+    {"-mm", 2},
     {"-o", 3},
     {"-s", 3},
     {"-t", 3},
     {"-texres", 1},
     {"-clamp", 1},
-    {"-bm", 1, "1"},
-    {"-imfchan", 1, "l"},
+    {"-bm", 1},
+    {"-imfchan", 1},
     {"-type", 1},
     {"-cc", 1},
     {"-colorspace", 1, "srgb"},
@@ -74,21 +75,41 @@ bool is_harmless(const Option& option, const std::vector<std::string_view>& word
     return lower_case(given) == option.harmless;
 }
 
-// In u' = scale u + offset, as other readers of the format take -s and -o.
-void apply(const Option& option, const std::vector<std::string_view>& words, MapOperands& result) {
-    const auto pair = [&](double fallback) {
-        return Vec2(words.empty() ? fallback : double(number(words[0])),
-                    words.size() < 2 ? fallback : double(number(words[1])));
+// -s and -o in u' = scale u + offset, as other readers of the format take them.
+bool apply_numbers(const Option& option, const std::vector<std::string_view>& words,
+                   MapOperands& result) {
+    const auto given = [&](std::size_t i, double fallback) {
+        return i < words.size() ? double(number(words[i])) : fallback;
     };
+    auto& t = result.transform;
+    if (option.name == "-s") {
+        if (given(0, 1) == 0 || given(1, 1) == 0) return false;
+        t[0] = given(0, 1);
+        t[4] = given(1, 1);
+    } else if (option.name == "-o") {
+        t[2] = given(0, 0);
+        t[5] = given(1, 0);
+    } else if (option.name == "-mm") {
+        result.base = given(0, 0);
+        result.gain = given(1, 1);
+    } else if (option.name == "-bm") {
+        result.bump = given(0, 1);
+    } else {
+        return false;
+    }
+    return true;
+}
+
+void apply(const Option& option, const std::vector<std::string_view>& words, MapOperands& result) {
     std::string given;
     for (const std::string_view word : words) (given += given.empty() ? "" : " ") += word;
+    const std::string folded = lower_case(given);
     if (option.name == "-clamp")
-        result.clamp = lower_case(given) == "on";
-    else if (option.name == "-s")
-        result.frame.scale = pair(1);
-    else if (option.name == "-o")
-        result.frame.offset = pair(0);
-    else if (!is_harmless(option, words, given))
+        result.clamp = folded == "on";
+    else if (option.name == "-imfchan" && folded.size() == 1 &&
+             std::string_view("rgbml").find(folded) != std::string_view::npos)
+        result.channel = folded.front();
+    else if (!apply_numbers(option, words, result) && !is_harmless(option, words, given))
         result.ignored.emplace_back(option.name);
 }
 
@@ -106,7 +127,7 @@ void take_options(std::string_view& rest, MapOperands& result) {
 }  // namespace
 
 MapOperands parse_map(std::string_view operands) {
-    MapOperands result = {.frame = {.used = true}};
+    MapOperands result;
     take_options(operands, result);
     operands = trim(operands);
     // The name goes on to the first option behind it; blanks may be part of it.
@@ -123,40 +144,82 @@ MapOperands parse_map(std::string_view operands) {
     return result;
 }
 
-TextureReader::TextureReader(const fs::path& model, Scene& into, Losses& lost)
-    : folder(model.parent_path()), scene(into), losses(lost) {}
+TextureReader::TextureReader(const fs::path& model, Scene& into, MaterialTally& lost)
+    : folder(model.parent_path()), scene(into), tally(lost) {}
 
-Index TextureReader::read(const MtlEntry& entry, const Statement& statement,
-                          const MapOperands& operands) {
+std::optional<MapImage> TextureReader::open(const MtlEntry& entry, const Statement& statement) {
+    MapImage image = {
+        .word = statement.word, .line = statement.line, .operands = parse_map(statement.operands)};
+    const std::string& file = image.operands.file;
+    const auto named = fmt::format("'{}'", printable(file));
     const auto lose = [&](const std::string& what) {
-        losses.push_back({place_of(entry.file, statement.line),
-                          fmt::format("material '{}': texture {}", printable(entry.name), what)});
-        return no_index;
+        tally.add(entry, statement.line, fmt::format("texture {}", what));
+        return std::nullopt;
     };
-    const auto named = fmt::format("'{}'", printable(operands.file));
-    if (operands.file.empty()) return lose("without a file name is ignored");
-    Found found = find_below(folder, entry.from, operands.file);
-    const std::string_view bare = name_without_comment(operands.file);
-    if (found.file.empty() && found.refusal.empty() && bare != operands.file)
+    if (file.empty()) return lose("without a file name is ignored");
+    Found found = find_below(folder, entry.from, file);
+    const std::string_view bare = name_without_comment(file);
+    if (found.file.empty() && found.refusal.empty() && bare != file)
         found = find_below(folder, entry.from, bare);
     if (found.file.empty())
-        return lose(fmt::format("{} {}; the plain colour is used", named,
-                                found.refusal.empty() ? "is not found" : found.refusal));
+        return lose(fmt::format("{} {}{}", named,
+                                found.refusal.empty() ? "is not found" : found.refusal,
+                                statement.key == "map_kd" ? "; the plain colour is used" : ""));
     if (!found.refusal.empty()) lose(fmt::format("{} {}", named, found.refusal));
-
-    const std::string file = found.file.string();
-    const auto [entry_of_file, fresh] = known.try_emplace({file, operands.clamp}, no_index);
-    if (!fresh && entry_of_file->second != no_index) return entry_of_file->second;
+    image.file = found.file;
     try {
-        Texture texture = {.name = found.file.filename().string()};
-        texture.raster = decode_image(read_bytes(found.file, max_texture_size), file);
-        texture.wrap_u = texture.wrap_v = operands.clamp ? Wrap::clamp : Wrap::repeat;
-        scene.textures.push_back(std::move(texture));
-        entry_of_file->second = Index(scene.textures.size() - 1);
-        return entry_of_file->second;
+        raster(image);
     } catch (const Error& error) {
+        broken.try_emplace(image.file.string(), error.what());
         return lose(fmt::format("is ignored: {}", error.what()));
     }
+    for (const std::string& option : image.operands.ignored)
+        tally.add(entry, statement.line,
+                  fmt::format("option {} of {} is ignored", option, printable(statement.word)));
+    return image;
+}
+
+const Raster& TextureReader::raster(const MapImage& image) {
+    const std::string file = image.file.string();
+    if (const Raster* raster = store.find(scene, file)) return *raster;
+    if (const auto found = broken.find(file); found != broken.end())
+        throw Error(Failure::input, "", found->second);
+    store.add(file, decode_image(read_bytes(image.file, max_texture_size), file));
+    return *store.find(scene, file);
+}
+
+Index TextureReader::texture(const MapImage& image, bool srgb) {
+    const MapOperands& operands = image.operands;
+    if (operands.is_ranged())
+        return derived(image, fmt::format("mm {} {} {}", operands.base, operands.gain, srgb), srgb,
+                       [&] { return remapped(raster(image), operands.base, operands.gain); });
+    const std::string file = image.file.string();
+    const auto [place, fresh] =
+        known.try_emplace(fmt::format("{} {} {}", operands.clamp, srgb, file), no_index);
+    if (!fresh) return place->second;
+    raster(image);
+    const Wrap wrap = operands.clamp ? Wrap::clamp : Wrap::repeat;
+    return place->second = store.place(scene, file,
+                                       {.name = image.file.filename().string(),
+                                        .srgb = srgb,
+                                        .wrap_u = wrap,
+                                        .wrap_v = wrap});
+}
+
+Index TextureReader::derived(const MapImage& image, const std::string& use, bool srgb,
+                             const std::function<Raster()>& make) {
+    const auto [place, fresh] = known.try_emplace(
+        fmt::format("{} {} {}", image.operands.clamp, use, image.file.string()), no_index);
+    if (!fresh) return place->second;
+    const Wrap wrap = image.operands.clamp ? Wrap::clamp : Wrap::repeat;
+    Raster raster = make();
+    scene.textures.push_back(
+        {.name = image.file.stem().string() + '_' + use.substr(0, use.find(' ')),
+         .raster = std::move(raster),
+         .srgb = srgb,
+         .wrap_u = wrap,
+         .wrap_v = wrap});
+    return place->second = Index(scene.textures.size() - 1);
 }
 
 }  // namespace penumbra::obj

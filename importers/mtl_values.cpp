@@ -34,8 +34,8 @@ constexpr auto keys = std::to_array<Key>({
     {"pr", "Pr", 1, 1},
     {"pm", "Pm", 1, 1},
     {"ps", "Ps"},
-    {"pc", "Pc"},
-    {"pcr", "Pcr"},
+    {"pc", "Pc", 1, 1},
+    {"pcr", "Pcr", 1, 1},
     {"aniso", "aniso"},
     {"anisor", "anisor"},
 });
@@ -54,7 +54,7 @@ struct Reader {
         Index line = 0;
     };
     const MtlEntry& entry;
-    Losses& losses;
+    MaterialTally& tally;
     std::map<std::string, Given, std::less<>> given = {};  // by folded key; the last one counts
     std::vector<std::string> told = {};
 
@@ -62,12 +62,16 @@ struct Reader {
     void lose(std::string_view key, Index line, const std::string& what) {
         if (std::ranges::find(told, key) != told.end()) return;
         told.emplace_back(key);
-        losses.push_back({place_of(entry.file, line),
-                          fmt::format("material '{}': {}", printable(entry.name), what)});
+        tally.add(entry, line, what);
     }
 
     void numbers(const Key& key, const Statement& statement) {
         std::string_view rest = without_comment(statement.operands);
+        std::string_view ahead = rest;
+        const std::string first = lower_case(next_word(ahead));
+        if (first == "spectral" || first == "xyz")
+            return lose(key.folded, statement.line,
+                        fmt::format("{} {} is ignored: only RGB is read", key.spelled, first));
         Given result = {.key = &key, .line = statement.line};
         std::string_view last;
         int count = 0;
@@ -160,7 +164,6 @@ struct Reader {
     void lose_layers(const tinyobj::material_t& read) {
         const auto layers = std::to_array<std::pair<std::string_view, double>>({
             {"ps", read.sheen},
-            {"pc", read.clearcoat_thickness},
             {"aniso", read.anisotropy},
         });
         for (const auto& [folded, amount] : layers) {
@@ -174,8 +177,8 @@ struct Reader {
 
 }  // namespace
 
-MtlValues read_values(const MtlEntry& entry, Losses& losses) {
-    Reader reader = {.entry = entry, .losses = losses};
+MtlValues read_values(const MtlEntry& entry, MaterialTally& tally) {
+    Reader reader = {.entry = entry, .tally = tally};
     MtlValues values;
     for (const Statement& statement : entry.statements) reader.read(statement, values);
     reader.choose_transparency();
@@ -192,6 +195,8 @@ MtlValues read_values(const MtlEntry& entry, Losses& losses) {
     if (!values.dissolve) values.dissolve = reader.value("tr", read.dissolve);
     values.roughness = reader.value("pr", read.roughness);
     values.metallic = reader.value("pm", read.metallic);
+    values.coat = reader.value("pc", read.clearcoat_thickness);
+    values.coat_roughness = reader.value("pcr", read.clearcoat_roughness);
     if (const auto illum = reader.value("illum", read.illum)) values.illum = int(*illum);
     reader.lose_layers(read);
     return values;

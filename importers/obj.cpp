@@ -15,8 +15,8 @@ Imported read_obj(const std::filesystem::path& file) {
 
     obj::resolve_normals(model, tally);
     const auto entries = obj::read_libraries(libraries, file, result.losses);
-    const auto frames = obj::build_materials(model, entries, file, result);
-    obj::build_meshes(std::move(model), frames, result.scene, tally);
+    obj::build_materials(model, entries, file, result);
+    obj::build_meshes(std::move(model), result.scene, tally);
     tally.append_to(result.losses);
     result.models.push_back({.file = name, .format = "OBJ"});
     return result;

@@ -5,10 +5,13 @@
 // (obj_text.cpp, mtl_text.cpp) and all indices after (obj_parse.cpp), and files are read here.
 #pragma once
 
+#include "image_store.h"
+
 #include "penumbra/importers.h"
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
@@ -162,14 +165,8 @@ void resolve_normals(Model& model, Tally& tally);
 
 // ---- obj_mesh.cpp -----------------------------------------------------------------------------
 
-/// How a material changes texture coordinates: u' = scale u + offset.
-struct TextureFrame {
-    bool used = false;
-    Vec2 scale = {1, 1}, offset = {0, 0};
-};
-
-/// Appends one mesh and instance per part. `frames` and `materials` go with Model::materials.
-void build_meshes(Model model, const std::vector<TextureFrame>& frames, Scene& scene, Tally& tally);
+/// Appends one mesh and instance per part. The scene's materials go with Model::materials.
+void build_meshes(Model model, Scene& scene, Tally& tally);
 
 // ---- mtl_text.cpp -----------------------------------------------------------------------------
 
@@ -189,6 +186,23 @@ struct MtlEntry {
     std::vector<Statement> statements = {};
 };
 
+/// Counts what materials lose: the same sentence about several of them becomes one Loss, at the
+/// first.
+class MaterialTally {
+  public:
+    void add(const MtlEntry& entry, Index line, const std::string& what);
+    void append_to(Losses& losses) const;
+
+  private:
+    struct Told {
+        std::string place = {}, material = {}, what = {};
+        std::size_t others = 0;
+        const MtlEntry* last = nullptr;
+    };
+    std::vector<Told> all = {};
+    std::unordered_map<std::string, std::size_t> by_what = {};
+};
+
 /// Reads the materials of all libraries that a model names. What is missing is lost, not wrong.
 std::vector<MtlEntry> read_libraries(const std::vector<Named>& libraries,
                                      const std::filesystem::path& model, Losses& losses);
@@ -199,12 +213,12 @@ std::vector<MtlEntry> read_libraries(const std::vector<Named>& libraries,
 struct MtlValues {
     std::optional<Color> ambient = {}, diffuse = {}, specular = {}, emission = {}, filter = {};
     std::optional<float> shininess = {}, ior = {}, dissolve = {};
-    std::optional<float> roughness = {}, metallic = {};
+    std::optional<float> roughness = {}, metallic = {}, coat = {}, coat_roughness = {};
     std::optional<int> illum = {};
     std::vector<Statement> maps = {};  ///< statements that name a texture
 };
 
-MtlValues read_values(const MtlEntry& entry, Losses& losses);
+MtlValues read_values(const MtlEntry& entry, MaterialTally& tally);
 
 // ---- mtl_map.cpp ------------------------------------------------------------------------------
 
@@ -212,29 +226,59 @@ MtlValues read_values(const MtlEntry& entry, Losses& losses);
 struct MapOperands {
     std::string file = {};
     bool clamp = false;
-    TextureFrame frame = {};
+    std::array<double, 6> transform = ImageMap().transform;  ///< -s and -o
+    double base = 0, gain = 1;                               ///< -mm: base + gain x the sample
+    double bump = 1;                                         ///< -bm
+    char channel = '\0';                    ///< -imfchan: r g b, m for alpha, l; 0: not given
     std::vector<std::string> ignored = {};  ///< options that the Scene cannot hold
+
+    bool is_ranged() const { return base != 0 || gain != 1; }
 };
 MapOperands parse_map(std::string_view operands);
 
-/// Decodes texture files, each once.
+/// A texture statement whose image can be read.
+struct MapImage {
+    std::string word = {};  ///< the statement's, for messages
+    Index line = 0;
+    std::filesystem::path file = {};
+    MapOperands operands = {};
+
+    ImageMap laid() const { return {.transform = operands.transform}; }
+};
+
+/// Decodes texture files, each once as far as memory allows.
 class TextureReader {
   public:
-    TextureReader(const std::filesystem::path& model, Scene& into, Losses& lost);
-    /// The texture that `statement` names; no_index, and a Loss, if it cannot be had.
-    Index read(const MtlEntry& entry, const Statement& statement, const MapOperands& operands);
+    TextureReader(const std::filesystem::path& model, Scene& into, MaterialTally& lost);
+
+    /// The image that `statement` names; none, and a loss, if it cannot be had.
+    std::optional<MapImage> open(const MtlEntry& entry, const Statement& statement);
+
+    /// Its samples, which stay as ImageStore says. Throws Error (input) where the file has changed
+    /// meanwhile.
+    const Raster& raster(const MapImage& image);
+
+    /// The Scene's texture with its samples.
+    Index texture(const MapImage& image, bool srgb);
+
+    /// The Scene's texture that `make` derives from it; `use`, whose first word ends its name, and
+    /// `srgb` tell it from others.
+    Index derived(const MapImage& image, const std::string& use, bool srgb,
+                  const std::function<Raster()>& make);
 
   private:
     std::filesystem::path folder = {};
     Scene& scene;
-    Losses& losses;
-    std::map<std::pair<std::string, bool>, Index> known = {};  ///< by file and clamp
+    MaterialTally& tally;
+    ImageStore store = {};                           ///< by file
+    std::map<std::string, std::string> broken = {};  ///< by file: what is wrong with it
+    std::map<std::string, Index> known = {};         ///< by file, options and use
 };
 
 // ---- mtl.cpp ----------------------------------------------------------------------------------
 
-/// Appends the materials that the model uses; returns how each changes texture coordinates.
-std::vector<TextureFrame> build_materials(const Model& model, const std::vector<MtlEntry>& entries,
-                                          const std::filesystem::path& file, Imported& result);
+/// Appends the materials that the model uses.
+void build_materials(const Model& model, const std::vector<MtlEntry>& entries,
+                     const std::filesystem::path& file, Imported& result);
 
 }  // namespace penumbra::obj

@@ -32,6 +32,11 @@ std::vector<std::vector<Index>> faces_by_part(const Model& model) {
     return result;
 }
 
+bool has_images(const Material& material) {
+    return std::holds_alternative<ImageMap>(material.pattern) || material.emission_map ||
+           material.coverage || material.gloss || material.normal_map;
+}
+
 // One value for a vertex where edges cross: the common one of all corners that it comes from, or
 // none, or what `blend` makes of them.
 template <class Blend>
@@ -62,13 +67,11 @@ struct Builder {
     std::vector<Corner> corners = {};
     std::vector<Vec3> outline = {};
     Mesh mesh = {};
-    TextureFrame frame = {};
     bool smooth = false, textured = false;
 
     Vec2f texcoord(Index index) const {
         if (index == no_index) return Vec2f(0);
-        const Vec2 placed = model.texcoords[index] * frame.scale + frame.offset;
-        return {float(placed.x), float(placed.y)};
+        return Vec2f(model.texcoords[index]);
     }
 
     Index vertex(const Corner& corner) {
@@ -162,9 +165,8 @@ struct Builder {
             triangle({corners[t[0]], corners[t[1]], corners[t[2]]});
     }
 
-    void begin(const Part& part, const std::vector<Index>& faces, const TextureFrame& of_part) {
+    void begin(const Part& part, const std::vector<Index>& faces, bool mapped) {
         mesh = {.name = part.name, .material = part.material};
-        frame = of_part;
         smooth = textured = false;
         std::size_t facets = 0;
         Index bare = 0;  // line of the first face that lacks a texture coordinate
@@ -178,7 +180,7 @@ struct Builder {
             }
         }
         mesh.triangles.reserve(facets);
-        if (frame.used && bare)
+        if (mapped && bare)
             tally.add("facets of a textured material without texture coordinates take those of "
                       "the image's lower left corner",
                       bare);
@@ -187,8 +189,8 @@ struct Builder {
         vertices.clear();
     }
 
-    Mesh build(const Part& part, const std::vector<Index>& faces, const TextureFrame& of_part) {
-        begin(part, faces, of_part);
+    Mesh build(const Part& part, const std::vector<Index>& faces, bool mapped) {
+        begin(part, faces, mapped);
         for (const Index i : faces) {
             const Face face = model.faces[i];
             const auto given = model.corners_of(face);
@@ -204,8 +206,7 @@ struct Builder {
 
 }  // namespace
 
-void build_meshes(Model model, const std::vector<TextureFrame>& frames, Scene& scene,
-                  Tally& tally) {
+void build_meshes(Model model, Scene& scene, Tally& tally) {
     const auto faces = faces_by_part(model);
     Builder builder = {.model = std::move(model), .tally = tally};
     const Matrix place = Matrix().setTranslation(builder.origin);
@@ -214,8 +215,8 @@ void build_meshes(Model model, const std::vector<TextureFrame>& frames, Scene& s
         const Index material = parts[i].material;
         scene.instances.push_back(
             {.name = parts[i].name, .mesh = Index(scene.meshes.size()), .transform = place});
-        scene.meshes.push_back(builder.build(
-            parts[i], faces[i], material == no_index ? TextureFrame() : frames[material]));
+        const bool mapped = material != no_index && has_images(scene.materials[material]);
+        scene.meshes.push_back(builder.build(parts[i], faces[i], mapped));
     }
 }
 

@@ -49,8 +49,12 @@ void read_placements(const Layer& layer, std::vector<Placement>& placements);
 /// [material.NAME]: lays over all materials of that name or appends a new one.
 void lay_materials(const Layer& layer, Scene& scene, TextureFiles& files, NewMaterials& made);
 
+/// The texture in `file`, relative to the layer, that `key` of the section names.
+Index load_texture(Section& section, const std::string& key, const std::string& file, Scene& scene,
+                   TextureFiles& files);
+
 /// [render] and [lighting].
-void lay_globals(const Layer& layer, Scene& scene, RenderOptions& render);
+void lay_globals(const Layer& layer, Imported& result, TextureFiles& files);
 
 /// [[sphere]] and [[plane]].
 void lay_objects(const Layer& layer, Scene& scene);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
 
 namespace penumbra {
@@ -49,6 +50,12 @@ Index camera_named(const Scene& scene, const Reference& reference) {
         if (scene.cameras[i].name == reference.name) return Index(i);
         names.push_back(scene.cameras[i].name);
     }
+    // A number where none is called so.
+    std::size_t number = 0;
+    const char* const end = reference.name.data() + reference.name.size();
+    const auto [rest, failure] = std::from_chars(reference.name.data(), end, number);
+    if (failure == std::errc() && rest == end && number < scene.cameras.size())
+        return Index(number);
     throw Error(reference.failure, reference.place,
                 fmt::format("no camera '{}'{}", printable(reference.name),
                             names.empty() ? " (the scene has no cameras)"

@@ -18,19 +18,6 @@ Kind pattern_of(const Material& material) {
     return present != nullptr ? *present : Kind{};
 }
 
-Index load_texture(Section& section, const std::string& file, Scene& scene, TextureFiles& files) {
-    const auto path = (section.layer().folder / file).lexically_normal();
-    if (const auto known = files.find(path); known != files.end()) return known->second;
-    if (std::error_code ignored; !std::filesystem::exists(path, ignored))
-        section.reject("texture", fmt::format("is '{}': no such file", printable(path.string())));
-    Texture texture = {.name = path.stem().string()};
-    texture.raster = decode_image(read_bytes(path), path.string());
-    scene.textures.push_back(std::move(texture));
-    const auto index = Index(scene.textures.size() - 1);
-    files.emplace(path, index);
-    return index;
-}
-
 // texture = "wood.png", or { file = "wood.png", size = 2 }.
 bool read_texture(Section& section, Material& material, Scene& scene, TextureFiles& files) {
     if (!section.has("texture")) return false;
@@ -45,7 +32,7 @@ bool read_texture(Section& section, Material& material, Scene& scene, TextureFil
     } else {
         section.read("texture", file);
     }
-    if (!file.empty()) map.texture = load_texture(section, file, scene, files);
+    if (!file.empty()) map.texture = load_texture(section, "texture", file, scene, files);
     if (map.texture == no_index) section.reject("texture", "must name a file");
     material.pattern = map;
     return true;
@@ -86,6 +73,24 @@ void read_pigment(Section& section, Material& material, Scene& scene, TextureFil
         material.pattern = {};
 }
 
+// absorption = { color = [0.9, 0.5, 0.5], distance = 1 }, or false.
+void read_absorption(Section& section, Material& material) {
+    if (section.is_false("absorption")) {
+        material.absorption.reset();
+        return;
+    }
+    auto inner = section.table("absorption");
+    if (!inner) return;
+    Absorption absorption = material.absorption.value_or(Absorption{});
+    inner->read_color("color", absorption.color);
+    for (int c = 0; c < 3; ++c)
+        if (!(absorption.color[c] > 0 && absorption.color[c] <= 1))
+            inner->reject("color", "must have channels above 0 and not above 1");
+    inner->read("distance", absorption.distance, positive);
+    inner->finish();
+    material.absorption = absorption;
+}
+
 void read_material(Section& section, Material& material, Scene& scene, TextureFiles& files) {
     read_pigment(section, material, scene, files);
     section.read_factor("ambient", material.ambient);
@@ -96,7 +101,10 @@ void read_material(Section& section, Material& material, Scene& scene, TextureFi
     section.read_factor("reflection", material.reflection);
     section.read_color("emission", material.emission);
     section.read("opacity", material.opacity, fraction);
+    section.read("transmission", material.transmission, fraction);
     section.read("ior", material.ior, positive);
+    section.read("fresnel", material.fresnel);
+    read_absorption(section, material);
     section.read("smooth", material.smooth);
     section.finish();
 }
@@ -110,6 +118,20 @@ std::vector<std::string> names_of(const std::vector<Material>& materials) {
 }
 
 }  // namespace
+
+Index load_texture(Section& section, const std::string& key, const std::string& file, Scene& scene,
+                   TextureFiles& files) {
+    const auto path = (section.layer().folder / file).lexically_normal();
+    if (const auto known = files.find(path); known != files.end()) return known->second;
+    if (std::error_code ignored; !std::filesystem::exists(path, ignored))
+        section.reject(key, fmt::format("is '{}': no such file", printable(path.string())));
+    Texture texture = {.name = path.stem().string()};
+    texture.raster = decode_image(read_bytes(path), path.string());
+    scene.textures.push_back(std::move(texture));
+    const auto index = Index(scene.textures.size() - 1);
+    files.emplace(path, index);
+    return index;
+}
 
 void lay_materials(const Layer& layer, Scene& scene, TextureFiles& files, NewMaterials& made) {
     for (auto& [name, section] : Section(layer, layer.table).named("material")) {

@@ -81,6 +81,29 @@ void read_plane(Section& section, Plane& plane, const Scene& scene) {
     if (material) plane.material = material_named(scene, *material);
 }
 
+// background = "sky.exr", or a colour.
+void read_background(Section& section, Scene& scene, TextureFiles& files) {
+    std::string text;
+    if (section.is_string("background")) section.read("background", text);
+    if (text.empty() || text[0] == '#') {
+        if (section.read_color("background", scene.background)) scene.sky.reset();
+        return;
+    }
+    scene.sky = Sky{.texture = load_texture(section, "background", text, scene, files)};
+}
+
+// exposure = "auto", or EV.
+void read_exposure(Section& section, Imported& result) {
+    if (section.is_string("exposure")) {
+        std::string text;
+        section.read("exposure", text);
+        if (text != "auto") section.reject("exposure", "must be a number or \"auto\"");
+        result.auto_exposure = true;
+    } else if (section.read("exposure", result.render.exposure, {.low = -32, .high = 32})) {
+        result.auto_exposure = false;
+    }
+}
+
 }  // namespace
 
 Matrix Placement::transform() const {
@@ -112,7 +135,8 @@ void read_placements(const Layer& layer, std::vector<Placement>& placements) {
     }
 }
 
-void lay_globals(const Layer& layer, Scene& scene, RenderOptions& render) {
+void lay_globals(const Layer& layer, Imported& result, TextureFiles& files) {
+    RenderOptions& render = result.render;
     Section top(layer, layer.table);
     if (auto section = top.table("render")) {
         std::array<int, 2> size = {render.width, render.height};
@@ -122,12 +146,12 @@ void lay_globals(const Layer& layer, Scene& scene, RenderOptions& render) {
         // POV-Ray clamps its sampling depth to 9 and its trace level to 256.
         section->read("samples", render.samples, {.low = 1, .high = 9});
         section->read("max_depth", render.max_depth, {.low = 1, .high = 256});
-        section->read_color("background", scene.background);
-        section->read("exposure", render.exposure, {.low = -32, .high = 32});
+        read_background(*section, result.scene, files);
+        read_exposure(*section, result);
         section->finish();
     }
     if (auto section = top.table("lighting")) {
-        section->read_factor("ambient", scene.ambient);
+        section->read_factor("ambient", result.scene.ambient);
         section->finish();
     }
 }

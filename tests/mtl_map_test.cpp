@@ -56,13 +56,22 @@ TEST_CASE("Mtl, texture options change wrapping and coordinates or are said") {
     const Imported clamped = own.read("newmtl a\nmap_Kd -clamp on t.png\n");
     CHECK(clamped.scene.textures[0].wrap_u == Wrap::clamp);
     CHECK(clamped.scene.textures[0].wrap_v == Wrap::clamp);
-    for (const std::string operands : {"-s 2 3 1 -o 0.5 0.25 t.png", "t.png -o 0.5 0.25 0 -s 2 3"})
-        CHECK(own.read("newmtl a\nmap_Kd " + operands + "\n").scene.meshes[0].texcoords ==
-              std::vector<Vec2f>{{0.5F, 0.25F}, {2.5F, 0.25F}, {0.5F, 3.25F}});
-    CHECK(own.losses("newmtl a\nmap_Kd -t 1 1 1 -mm 0.1 1 -blendu on -imfchan r t.png\n") ==
+    for (const std::string operands :
+         {"-s 2 3 1 -o 0.5 0.25 t.png", "t.png -o 0.5 0.25 0 -s 2 3"}) {
+        const Scene scene = own.read("newmtl a\nmap_Kd " + operands + "\n").scene;
+        CHECK(std::get<ImageMap>(scene.materials[0].pattern).transform ==
+              std::array<double, 6>{2, 0, 0.5, 0, 3, 0.25});
+        CHECK(scene.meshes[0].texcoords == std::vector<Vec2f>{{0, 0}, {1, 0}, {0, 1}});
+    }
+    CHECK(own.losses("newmtl a\nmap_Kd -t 1 1 1 -s 0 1 -blendu on -imfchan r t.png\n") ==
           Lines{"a.mtl:2: material 'a': option -t of map_Kd is ignored",
-                "a.mtl:2: material 'a': option -mm of map_Kd is ignored",
+                "a.mtl:2: material 'a': option -s of map_Kd is ignored",
                 "a.mtl:2: material 'a': option -imfchan of map_Kd is ignored"});
+    // 0.1 + 0.5 x 200 / 255, in the image's own encoding.
+    const Imported ranged = own.read("newmtl a\nmap_Kd -mm 0.1 0.5 t.png\n");
+    CHECK(own.lost(ranged).empty());
+    CHECK(ranged.scene.textures.at(0).srgb);
+    CHECK(ranged.scene.textures[0].raster.data[0] == std::byte(126));
 }
 
 TEST_CASE("Mtl, the same image is read once") {
@@ -106,4 +115,166 @@ TEST_CASE("Mtl, textured facets without texture coordinates are said") {
     CHECK(own.lost(imported) == Lines{"m.obj:10: facets of a textured material without texture "
                                       "coordinates take those of the image's lower left corner"});
     CHECK(imported.scene.meshes[0].texcoords.size() == imported.scene.meshes[0].positions.size());
+}
+
+namespace {
+
+// A row of texels in the folder, `channels` samples each.
+void save(const Files& own, const std::string& name, int channels,
+          const std::vector<int>& samples) {
+    Raster raster = {.width = int(samples.size()) / channels, .height = 1, .channels = channels};
+    for (const int sample : samples) raster.data.push_back(std::byte(sample));
+    save_raster(own.path(name), raster);
+}
+
+std::vector<int> samples_of(const Scene& scene, Index texture) {
+    std::vector<int> result;
+    for (const std::byte sample : scene.textures.at(texture).raster.data)
+        result.push_back(std::to_integer<int>(sample));
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("Mtl, map_d and the alpha of map_Kd make holes") {
+    const Files own;
+    save(own, "grey.png", 1, {0, 128, 255});
+    save(own, "rgba.png", 4, {255, 0, 0, 51, 0, 255, 0, 255});
+    save(own, "solid.png", 4, {255, 0, 0, 255, 0, 255, 0, 255});
+    save(own, "gone.png", 4, {255, 0, 0, 0, 0, 255, 0, 0});
+    const auto coverage = [&](const std::string& text) {
+        const Scene scene = own.read("newmtl a\n" + text).scene;
+        const Material& m = scene.materials[0];
+        if (!m.coverage) return std::vector<int>();
+        CHECK(m.opacity == 1);
+        CHECK_FALSE(m.coverage->cutoff);
+        CHECK_FALSE(scene.textures[m.coverage->map.texture].srgb);
+        CHECK(scene.textures[m.coverage->map.texture].raster.channels == 1);
+        return samples_of(scene, m.coverage->map.texture);
+    };
+    CHECK(coverage("map_d grey.png\n") == std::vector<int>{0, 128, 255});
+    CHECK(coverage("d 0.5\nmap_d grey.png\n") == std::vector<int>{0, 64, 128});
+    CHECK(coverage("map_d -mm 1 -1 grey.png\n") == std::vector<int>{255, 127, 0});
+    CHECK(coverage("map_d rgba.png\n") == std::vector<int>{51, 255});
+    CHECK(coverage("map_d -imfchan g rgba.png\n") == std::vector<int>{0, 255});
+    CHECK(coverage("map_Kd rgba.png\n") == std::vector<int>{51, 255});
+    CHECK(coverage("map_Kd rgba.png\nmap_d grey.png\n") == std::vector<int>{0, 128, 255});
+    CHECK(coverage("map_Kd solid.png\n").empty());
+    CHECK(coverage("map_Kd gone.png\n").empty());
+    CHECK(own.read("newmtl a\nmap_Kd gone.png\n").scene.materials[0].opacity == 1);
+    CHECK(own.read("newmtl a\nmap_d solid.png\nd 0.5\n").scene.materials[0].opacity == 0.5F);
+}
+
+TEST_CASE("Mtl, map_Ke and norm become emission and normal maps") {
+    const Files own;
+    save(own, "t.png", 3, {255, 128, 0, 0, 128, 255});
+    const Imported imported =
+        own.read("newmtl a\nmap_Ke -s 2 2 t.png\nnorm -bm 0.5 t.png\nKe 0 0 0\n");
+    CHECK(own.lost(imported).empty());
+    const Scene& scene = imported.scene;
+    const Material& m = scene.materials[0];
+    REQUIRE(m.emission_map);
+    REQUIRE(m.normal_map);
+    CHECK(m.emission == Color(1));
+    CHECK(m.emission_map->transform == std::array<double, 6>{2, 0, 0, 0, 2, 0});
+    CHECK(scene.textures[m.emission_map->texture].srgb);
+    CHECK_FALSE(scene.textures[m.normal_map->map.texture].srgb);
+    CHECK(m.normal_map->scale == 0.5F);
+    CHECK(own.material("newmtl a\nKe 0.5 0.25 1\nmap_Ke t.png\n").emission ==
+          Color(0.5F, 0.25F, 1));
+
+    const Imported glass = own.read("newmtl a\nd 0.5\nmap_Ke t.png\n");
+    CHECK_FALSE(glass.scene.materials[0].emission_map);
+    CHECK(glass.scene.materials[0].emission.x == Approx(0.5));
+    CHECK(own.lost(glass) == Lines{"a.mtl:3: material 'a': map_Ke is replaced by its mean: the "
+                                   "surface is transparent"});
+    // illum 0 shines, by its own image too.
+    const Material lamp = own.material("newmtl a\nKd 1 1 1\nillum 0\nmap_Ke t.png\n");
+    CHECK(lamp.emission == Color(1));
+    CHECK(lamp.ambient == Color(1));
+}
+
+TEST_CASE("Mtl, map_Ks tints highlight and mirror image") {
+    const Files own;
+    save(own, "t.png", 3, {255, 128, 0, 0, 128, 255});
+    const Imported imported = own.read("newmtl a\nKs 0.5 0.5 0.5\nNs 40\nillum 3\nmap_Ks t.png\n");
+    const Material& m = imported.scene.materials[0];
+    REQUIRE(m.gloss);
+    CHECK(m.metallic == 1);
+    CHECK(m.gloss->color.texture == 0);
+    CHECK(m.gloss->level.texture == no_index);
+    REQUIRE(m.gloss->lobes.size() == 1);
+    CHECK(m.gloss->lobes[0].specular == Approx(0.5));
+    CHECK(m.gloss->lobes[0].shininess == 10);
+    CHECK(m.gloss->lobes[0].reflection == Color(0.5F));
+    CHECK(own.lost(imported) == Lines{"a.mtl:5: material 'a': map_Ks is approximate: the highlight "
+                                      "is white in grazing light"});
+    const Imported varied = own.read("newmtl a\nKs 1 1 1\nNs 56\nmap_Ns t.png\n");
+    REQUIRE(varied.scene.materials[0].gloss);
+    CHECK(varied.scene.materials[0].metallic == 0);
+    const auto& lobes = varied.scene.materials[0].gloss->lobes;
+    REQUIRE(lobes.size() == 8);
+    CHECK(lobes[0].shininess == 1);
+    CHECK(lobes[4].shininess == Approx(8));
+    CHECK(lobes[7].shininess == Approx(14));
+    CHECK_FALSE(varied.scene.textures.at(0).srgb);
+    CHECK(own.lost(varied) == Lines{"a.mtl:4: material 'a': map_Ns: mixed from 8 Phong lobes"});
+    CHECK(own.losses("newmtl a\nKs 1 1 1\nNs 40\nd 0.5\nmap_Ks t.png\n") ==
+          Lines{"a.mtl:5: material 'a': map_Ks is ignored: the surface is transparent"});
+}
+
+TEST_CASE("Mtl, map_Pr and map_Pm vary the polish") {
+    const Files own;
+    save(own, "rough.png", 1, {51, 255});
+    save(own, "metal.png", 1, {0, 255});
+    save(own, "color.png", 3, {255, 0, 0, 0, 0, 255});
+    save(own, "even.png", 1, {51, 51});
+
+    const Imported plastic = own.read("newmtl a\nKd 1 0.5 0\nPm 0\nmap_Pr rough.png\n");
+    const Material& p = plastic.scene.materials[0];
+    REQUIRE(p.gloss);
+    CHECK(p.metallic == 0);
+    CHECK(p.diffuse == Approx(0.96));
+    CHECK(p.color == Color(1, 0.5F, 0));
+    CHECK(std::holds_alternative<std::monostate>(p.pattern));
+    CHECK(p.gloss->color.texture == no_index);
+    CHECK(samples_of(plastic.scene, p.gloss->level.texture) == std::vector<int>{0, 255});
+    REQUIRE(p.gloss->lobes.size() == 8);
+    // The law of set_metallic_roughness() at both ends.
+    for (const auto& [lobe, roughness] :
+         {std::pair(p.gloss->lobes.front(), 0.2F), std::pair(p.gloss->lobes.back(), 1.0F)}) {
+        Material expected;
+        set_metallic_roughness(expected, 0, roughness);
+        CHECK(lobe.specular == Approx(expected.specular));
+        CHECK(lobe.shininess == Approx(expected.shininess));
+        CHECK(lobe.reflection.x == Approx(expected.reflection.x));
+    }
+    CHECK(own.lost(plastic) == Lines{"a.mtl:1: material 'a': metallic and roughness images: mixed "
+                                     "from 8 Phong lobes"});
+
+    const Imported metal = own.read("newmtl a\nmap_Kd color.png\nPr 0.2\nmap_Pm metal.png\n");
+    const Material& m = metal.scene.materials[0];
+    REQUIRE(m.gloss);
+    CHECK(m.metallic == 1);
+    CHECK(m.diffuse == 1);
+    CHECK(m.gloss->level.texture == no_index);
+    REQUIRE(m.gloss->lobes.size() == 1);
+    // 0.04 is 56 of 255; the metal is blue.
+    CHECK(samples_of(metal.scene, m.gloss->color.texture) ==
+          std::vector<int>{56, 56, 56, 0, 0, 255});
+    CHECK(samples_of(metal.scene, std::get<ImageMap>(m.pattern).texture).at(0) == 250);
+
+    const Imported even = own.read("newmtl a\nPm 1\nmap_Pr even.png\n");
+    Material expected;
+    set_metallic_roughness(expected, 1, 0.2F);
+    CHECK_FALSE(even.scene.materials[0].gloss);
+    CHECK(even.scene.materials[0].specular == expected.specular);
+    CHECK(even.scene.materials[0].shininess == Approx(expected.shininess));
+
+    CHECK(own.losses("newmtl a\nmap_Kd color.png\nPr 0.2\nmap_Pm -s 2 2 metal.png\n") ==
+          Lines{"a.mtl:4: material 'a': map_Pm is replaced by its mean: it is laid in another way "
+                "than the first image"});
+    CHECK(own.losses("newmtl a\nd 0.5\nmap_Pr rough.png\n") ==
+          Lines{"a.mtl:3: material 'a': map_Pr is replaced by its mean: the surface is "
+                "transparent"});
 }

@@ -63,7 +63,7 @@ TEST_CASE("Mtl, illum says what of a material is used") {
     CHECK(constant.diffuse == 0);
     CHECK(constant.ambient == Color(0));
     CHECK(constant.specular == 0);
-    CHECK(files.losses(text + "4\nd 0.5\n") ==
+    CHECK(files.losses(text + "4\n") ==
           Lines{"a.mtl:1: material 'a': the mirror reflection of illum 4 is left out"});
     CHECK(files.losses(text + "10\n") == Lines{"a.mtl:1: material 'a': illum 10 is taken as 2"});
 }
@@ -87,6 +87,61 @@ TEST_CASE("Mtl, glass bends light only where it lets it through") {
     CHECK(ior("d 0.3\nillum 2\n") == 1);
     CHECK(ior("illum 4\n") == 1);
     CHECK(files.material("newmtl a\nd 0.3\nillum 9\n").opacity == 0.3F);
+}
+
+TEST_CASE("Mtl, glass and mirrors reflect as their illum says") {
+    const auto made = [](const std::string& more) {
+        return files.material("newmtl a\nKs 0.5 0.5 0.5\nNs 40\n" + more);
+    };
+    for (const char* glass : {"4", "6", "7"})
+        CHECK(made(std::string("d 0.5\nNi 1.3\nillum ") + glass + "\n").reflection == Color(0.5F));
+    CHECK(made("d 0.5\nillum 9\n").reflection == Color(0));
+    CHECK_FALSE(made("d 0.5\nNi 1.3\nillum 6\n").fresnel);
+    CHECK_FALSE(made("Ni 1.3\nillum 3\n").fresnel);
+    for (const char* fresnel : {"d 0.5\nillum 7\n", "illum 5\n"}) {
+        CHECK(made(std::string("Ni 1.3\n") + fresnel).fresnel);
+        CHECK(made(std::string("Ni 1.3\n") + fresnel).ior == 1.3F);
+        CHECK(made(fresnel).ior == 1.5F);  // without Ni there would be no reflection
+    }
+    // illum 5 lets nothing bend, which Fresnel's term needs.
+    const Imported pane = files.read("newmtl a\nKs 1 1 1\nNs 9\nNi 1.5\nd 0.5\nillum 5\n");
+    CHECK_FALSE(pane.scene.materials[0].fresnel);
+    CHECK(pane.scene.materials[0].ior == 1);
+    CHECK(files.lost(pane) == Lines{"a.mtl:1: material 'a': the Fresnel reflection of illum 5 is "
+                                    "replaced by Ks"});
+}
+
+TEST_CASE("Mtl, Tf tints what shines through as far as the colour of the surface can") {
+    // Glass without a colour of its own: exactly.
+    const Material bottle = files.material("newmtl a\nKd 0 0 0\nd 0.2\nTf 0.5 1 0.5\n");
+    CHECK(bottle.color == Color(0.5F, 1, 0.5F));
+    CHECK(bottle.transmission == 1);
+    CHECK(bottle.diffuse == 0);
+    CHECK(bottle.ambient == Color(0));
+    // 1 - t + t (1, 0, 0) = (1, 0.5, 0.5) with t = 1/2: exactly.
+    CHECK(files.material("newmtl a\nKd 1 0 0\nd 0.5\nTf 1 0.5 0.5\n").transmission == 0.5F);
+    const Imported near = files.read("newmtl a\nKd 1 0 0\nd 0.5\nTf 1 0.5 0\n");
+    CHECK(near.scene.materials[0].transmission == 0.75F);
+    CHECK(files.lost(near) == Lines{"a.mtl:1: material 'a': Tf is approximate: what shines through "
+                                    "is tinted by Kd"});
+    CHECK(files.losses("newmtl a\nKd 1 1 1\nd 0.5\nTf 1 0 0\n") ==
+          Lines{"a.mtl:1: material 'a': the colour of what shines through (Tf) is ignored"});
+    CHECK(files.material("newmtl a\nd 0.5\nTf 1 1 1\n").transmission == 0);
+    CHECK(files.material("newmtl a\nTf 1 0 0\n").opacity == 1);
+}
+
+TEST_CASE("Mtl, a clear coat adds its mirror image") {
+    const std::string text = "newmtl a\nKs 0.5 0.5 0.5\nNs 40\nillum 2\n";
+    const Imported coated = files.read(text + "Pc 0.5\n");
+    CHECK(coated.scene.materials[0].reflection == Color(0.02F));
+    CHECK(coated.scene.materials[0].specular == 1);  // of a polished coat, stronger than 0.5
+    CHECK(files.lost(coated) ==
+          Lines{"a.mtl:1: material 'a': Pc is approximate: its mirror image is added, the stronger "
+                "highlight stays"});
+    // A rough coat mirrors nothing, and its highlight is the weaker one.
+    const Imported rough = files.read(text + "Pc 0.5\nPcr 0.9\n");
+    CHECK(rough.scene.materials[0].reflection == Color(0));
+    CHECK(rough.scene.materials[0].specular == 0.5F);
 }
 
 TEST_CASE("Mtl, d and Tr are opposites and d wins") {
@@ -126,16 +181,20 @@ TEST_CASE("Mtl, the PBR extension is read as metallic and roughness") {
     CHECK(read.reflection == expected.reflection);
     CHECK(read.color == Color(1, 0.5F, 0));
     CHECK(files.losses("newmtl a\nPr 1\nPc 0.5\nPs 0\naniso 0.1\n") ==
-          Lines{"a.mtl:3: material 'a': Pc is ignored", "a.mtl:5: material 'a': aniso is ignored"});
+          Lines{"a.mtl:5: material 'a': aniso is ignored",
+                "a.mtl:1: material 'a': Pc is approximate: its mirror image is added, the stronger "
+                "highlight stays"});
 }
 
 TEST_CASE("Mtl, keys and maps that are not supported are said once each") {
     CHECK(files.losses("newmtl a\nmap_Ks s.png\nmap_Bump b.png\nnorm n.png\nmap_ks t.png\n"
                        "sharpness 60\nfoo 1\nfoo 2\nrefl -type sphere r.png\n") ==
           Lines{"a.mtl:6: material 'a': sharpness is ignored",
-                "a.mtl:7: material 'a': foo is ignored", "a.mtl:2: material 'a': map_Ks is ignored",
-                "a.mtl:3: material 'a': map_Bump is ignored",
-                "a.mtl:4: material 'a': norm is ignored",
+                "a.mtl:7: material 'a': foo is ignored",
+                "a.mtl:4: material 'a': texture 'n.png' is not found",
+                "a.mtl:2: material 'a': map_Ks is ignored",
+                "a.mtl:3: material 'a': map_Bump is ignored: it gives heights, norm would give "
+                "normals",
                 "a.mtl:9: material 'a': refl is ignored"});
 }
 
@@ -144,7 +203,7 @@ TEST_CASE("Mtl, values that make no sense are said and mended") {
                        "Ks spectral f.rfl\nNi nan\n") ==
           Lines{"a.mtl:2: material 'a': Kd '1 x 0' is not a number and is ignored",
                 "a.mtl:3: material 'a': Ka without a number is ignored",
-                "a.mtl:8: material 'a': Ks 'spectral f.rfl' is not a number and is ignored",
+                "a.mtl:8: material 'a': Ks spectral is ignored: only RGB is read",
                 "a.mtl:9: material 'a': Ni 'nan' is not a number and is ignored",
                 "a.mtl:6: material 'a': Ke 1e+99 is out of range; 3.403e+38 is used",
                 "a.mtl:5: material 'a': Ns -3 is out of range; 0 is used",
@@ -154,6 +213,19 @@ TEST_CASE("Mtl, values that make no sense are said and mended") {
     CHECK(files.losses("Kd 1 1 1\nKs 1 1 1\nnewmtl a\nKd 0 1 0\nnewmtl a\nKd 1 0 0\n") ==
           Lines{"a.mtl:1: what stands before newmtl is ignored",
                 "a.mtl:5: material 'a' is defined again; the first is used"});
+}
+
+TEST_CASE("Mtl, what several materials lose is said once") {
+    const Files own;
+    test::write(own.path("a.mtl"), "newmtl a\nsharpness 9\nKd xyz 1 1 1\nnewmtl b\nsharpness 9\n"
+                                   "newmtl c\nsharpness 9\nnewmtl d\nKd xyz 1 1 1\n");
+    test::write(own.path("m.obj"), "mtllib a.mtl\n" + facet +
+                                       "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\n"
+                                       "usemtl d\nf 1 2 3\n");
+    CHECK(
+        own.lost(read_obj(own.path("m.obj"))) ==
+        Lines{"a.mtl:2: material 'a': sharpness is ignored (and 2 more materials)",
+              "a.mtl:3: material 'a': Kd xyz is ignored: only RGB is read (and 1 more material)"});
 }
 
 TEST_CASE("Mtl, names may hold blanks and number signs") {

@@ -48,6 +48,7 @@ TEST_CASE("[render] and [lighting] set what a picture is made with") {
     CHECK(result.render.samples == 3);
     CHECK(result.render.max_depth == 7);
     CHECK(result.render.exposure == -1.5);
+    CHECK_FALSE(result.auto_exposure);
     CHECK(result.scene.background == Color(0.1F, 0.2F, 0.3F));
     CHECK(result.scene.ambient == Color(0.5F, 0.25F, 2));
     CHECK(load("[lighting]\nambient = 0.5").scene.ambient == Color(0.5F));
