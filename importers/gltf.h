@@ -3,7 +3,11 @@
 // tinygltf turns the JSON into structures; it is given a JSON without buffers and images, so that
 // it never opens a file. Everything that refers to something is checked before (gltf_check.cpp),
 // so that after open_document() every index is in range and every accessor within its buffer.
+// Compressed data are decompressed there as well; what comes later sees plain accessors only.
 #pragma once
+
+#include "gltf_pose.h"
+#include "image_store.h"
 
 #include "penumbra/importers.h"
 
@@ -14,6 +18,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -67,6 +72,24 @@ Container split_container(Bytes content, const std::string& file, Losses& losses
 /// Parses JSON; what is nested deeper than any glTF is left out. Throws Error (input).
 nlohmann::json parse_json(std::string_view text, const std::string& file, Losses& losses);
 
+// ---- gltf_meshopt.cpp, gltf_meshopt_vertices.cpp, gltf_draco.cpp ------------------------------
+
+/// Decompresses the buffer views that EXT_ or KHR_meshopt_compression compresses, each into a
+/// buffer of its own. Throws Error (input).
+void decode_meshopt(Document& document, nlohmann::json& root);
+
+/// By buffer: whether it only serves programs that cannot decompress, and need not be read.
+/// Precondition: check_schema() passed.
+std::vector<bool> fallback_buffers(const nlohmann::json& root);
+
+/// The bytes of `count` elements of `stride` bytes, a multiple of 4 up to 256, from the attribute
+/// codec of KHR_meshopt_compression, version 1. None where `data` are not valid.
+std::vector<std::byte> decode_vertices_v1(Bytes data, std::size_t count, std::size_t stride);
+
+/// Decompresses the primitives that KHR_draco_mesh_compression compresses, into accessors of their
+/// own. Throws Error (input).
+void decode_draco(Document& document, nlohmann::json& root, Losses& losses);
+
 // ---- gltf_uri.cpp -----------------------------------------------------------------------------
 
 /// The bytes that `uri` stands for: a data: URI, or a file below `folder`. Throws Error (input).
@@ -107,44 +130,100 @@ void read_indices(const Document& document, int accessor, Index* out);
 /// Number of components of the accessor's type.
 int components(const tinygltf::Accessor& accessor);
 
+// ---- gltf_loss.cpp ----------------------------------------------------------------------------
+
+/// What many primitives may have in common, said once.
+struct PrimitiveLoss {
+    std::string what = {};     ///< a sentence, or with `things` the word for one of them
+    std::string pointer = {};  ///< to the first primitive
+    std::size_t primitives = 0;
+    std::optional<std::size_t> things = {};  ///< so many are ignored
+};
+
 // ---- gltf_material.cpp ------------------------------------------------------------------------
+
+/// The images of one surface that bake_polish() made, for all materials with the same ones.
+struct BakedPolish {
+    Index scattered = no_index;  ///< into Scene::textures; none: the base colour stays
+    Gloss gloss = {};            ///< without transforms
+};
+
+/// What the materials have come to so far.
+struct Looks {
+    std::map<int, Index> materials = {};   ///< by glTF index; -1: the default one
+    std::map<int, Index> untextured = {};  ///< the same without images
+    std::map<int, int> texcoords = {};     ///< n of TEXCOORD_n by glTF index; absent: no images
+    std::map<std::string, Index> textures = {};  ///< by image, sampling and use
+    std::map<std::string, BakedPolish> polishes = {};
+    ImageStore store = {};           ///< by number
+    std::map<int, int> images = {};  ///< by texture: the one that can be read; -1: none
+    std::map<std::pair<int, bool>, Color> means = {};  ///< by texture, and whether it is sRGB
+    std::map<std::string, std::pair<std::size_t, int>> told = {};  ///< into losses, and how often
+};
 
 /// What reading has produced so far, and what of the file it came from.
 struct Reader {
     const Document& document;
     Scene& scene;
     Losses& losses;
-    std::map<int, Index> materials = {};                ///< by glTF index; -1: the default one
-    std::map<Index, Index> untextured = {};             ///< by Scene's material
-    std::map<std::array<int, 4>, Index> textures = {};  ///< by image, wrapping and filter
-    std::map<std::pair<int, bool>, Color> means = {};   ///< by texture, and whether it is sRGB
-    std::map<int, std::vector<Index>> meshes = {};      ///< by glTF mesh: one Mesh a primitive
+    const ModelOptions& options;
+    Looks looks = {};
+    Pose pose = {};                                      ///< of all nodes
+    std::map<Form, std::vector<ShownMesh>> meshes = {};  ///< one Mesh a primitive
+    std::vector<PrimitiveLoss> primitive_losses = {};
 
     void lose(const std::string& pointer, const std::string& what) {
         losses.push_back({document.place(pointer), what});
     }
+    /// The same sentence for several materials becomes one loss with their number.
+    void lose_in_material(const std::string& pointer, const std::string& what);
+    /// The same sentence for several primitives becomes one loss.
+    void lose_in_primitive(const std::string& pointer, const std::string& what);
+    /// `count` things, such as a "point", are ignored in a primitive; they are added up.
+    void ignore_in_primitive(const std::string& pointer, const std::string& thing,
+                             std::size_t count);
+    /// Moves what primitives have lost to `losses`.
+    void say_primitive_losses();
 };
 
-/// How a material's base colour texture is laid over a mesh.
+/// Which texture coordinates a material's images are laid by; all of them have the same ones.
 struct TextureUse {
     bool used = false;
-    int texcoord = 0;          ///< TEXCOORD_n
-    bool transformed = false;  ///< u' = a u + c v + e, v' = b u + d v + f, before v is flipped
-    std::array<double, 6> transform = {1, 0, 0, 1, 0, 0};  ///< a b c d e f
+    int texcoord = 0;  ///< TEXCOORD_n
 };
 
-/// The Scene's material for glTF material `index`, made on first use; -1 is glTF's default.
+/// The glTF material of a primitive, which the chosen variant may replace; -1 is glTF's default.
+/// Throws Error (usage) where the file does not have that variant.
+int material_of(const Reader& reader, const tinygltf::Primitive& primitive);
+
+/// The Scene's material for glTF material `index`, made on first use.
 Index read_material(Reader& reader, int index);
 
-/// The texture that read_material() gives to glTF material `index`.
-TextureUse base_texture_use(const Reader& reader, int index);
+/// What the images need that read_material() gave to glTF material `index`.
+TextureUse texture_use(const Reader& reader, int index);
 
-/// The Scene's `material` without its texture.
-Index untextured(Reader& reader, Index material);
+/// glTF material `index` without its images.
+Index untextured(Reader& reader, int index);
+
+// ---- gltf_camera.cpp, gltf_lights.cpp ---------------------------------------------------------
+
+/// Adds the camera of a node that has one.
+void read_camera(Reader& reader, int node, const Matrix& world);
+
+/// Adds the light of a node if it has one.
+void read_light(Reader& reader, int node, const Matrix& world);
+
+/// Lets the lights that have a position fall off with the square of the distance, once the size of
+/// the scene is known.
+void set_attenuation(Scene& scene);
+
+/// Where a camera or a light looks: both look along -z (glTF 2.0, section 3.10, and
+/// KHR_lights_punctual).
+Vec3 direction_of(const Matrix& world);
 
 // ---- gltf_mesh.cpp ----------------------------------------------------------------------------
 
-/// The Scene's meshes for glTF mesh `index`, made on first use.
-const std::vector<Index>& read_mesh(Reader& reader, int index);
+/// The Scene's meshes for a glTF mesh in that form, made on first use.
+const std::vector<ShownMesh>& read_mesh(Reader& reader, const Form& form);
 
 }  // namespace penumbra::gltf

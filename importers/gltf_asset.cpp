@@ -21,15 +21,26 @@ const std::set<std::string> supported = {
     "KHR_materials_specular",
     "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_unlit",
+    "KHR_materials_transmission",
+    "KHR_materials_volume",
+    "KHR_materials_clearcoat",
+    "KHR_materials_variants",
     "KHR_texture_transform",
     "KHR_mesh_quantization",
     "KHR_node_visibility",
+    "KHR_draco_mesh_compression",
+    "KHR_meshopt_compression",
+    "EXT_meshopt_compression",
+    "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
 };
 
-// Compression: the file holds the same data uncompressed unless it requires the extension.
-const std::set<std::string> fallback = {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
-                                        "KHR_meshopt_compression"};
+// What a material or texture that uses them says itself.
+const std::set<std::string> named_later = {
+    "KHR_materials_sheen",       "KHR_materials_anisotropy",
+    "KHR_materials_iridescence", "KHR_materials_diffuse_transmission",
+    "KHR_materials_dispersion",  "KHR_texture_basisu",
+};
 
 // Required, but the shapes are right without: shown with the plain material, and a loss.
 bool only_appearance(const std::string& extension) {
@@ -83,12 +94,12 @@ void check_asset(const json& root, const std::string& file, Losses& losses) {
         return found;
     };
     for (const std::string& name : names("extensionsRequired"))
-        if (!supported.count(name) && !only_appearance(name))
+        if (!supported.count(name) && !named_later.count(name) && !only_appearance(name))
             throw Error(Failure::input, file + "#/extensionsRequired",
                         fmt::format("the model needs the extension {}, which is not supported",
                                     printable(name)));
     for (const std::string& name : names("extensionsUsed"))
-        if (!supported.count(name) && !fallback.count(name))
+        if (!supported.count(name) && !named_later.count(name))
             losses.push_back({file + "#/extensionsUsed",
                               fmt::format("the extension {} is ignored", printable(name))});
 }

@@ -53,6 +53,7 @@ struct Checker {
     void array_of_numbers(const json& value, const Rule& rule, const Step* at) const;
     void bring_into_range(json& value, const Rule& rule, const Step* at);
     void cameras() const;
+    void channels() const;
 };
 
 void Checker::follow(json& value, std::string_view path, const Rule& rule, const Step* at) {
@@ -194,6 +195,21 @@ void Checker::cameras() const {
     }
 }
 
+// A channel counts the samplers of its own animation.
+void Checker::channels() const {
+    for (std::size_t a = 0; root.contains("animations") && a < root["animations"].size(); ++a) {
+        const json& animation = root["animations"][a];
+        const std::size_t samplers = animation["samplers"].size();
+        for (std::size_t c = 0; c < animation["channels"].size(); ++c)
+            if (const auto index = animation["channels"][c]["sampler"].get<std::size_t>();
+                index >= samplers)
+                throw Error(
+                    Failure::input,
+                    fmt::format("{}#/animations/{}/channels/{}/sampler", file, a, c),
+                    fmt::format("is {}, but the animation has {} samplers", index, samplers));
+    }
+}
+
 }  // namespace
 
 void check_schema(json& root, const std::string& file, Losses& losses) {
@@ -204,7 +220,13 @@ void check_schema(json& root, const std::string& file, Losses& losses) {
         root.erase("scene");
     }
     for (const Rule& rule : schema) checker.follow(root, rule.path, rule, &start);
+    for (const std::string_view texture : texture_references)
+        for (const Rule& rule : texture_members) {
+            const std::string path = std::string(texture).append(rule.path);
+            checker.follow(root, path, rule, &start);
+        }
     checker.cameras();
+    checker.channels();
 }
 
 }  // namespace penumbra::gltf

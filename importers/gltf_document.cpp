@@ -1,6 +1,7 @@
 // File -> Document.
 #include "file.h"
 #include "gltf.h"
+#include "gltf_schema.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -17,11 +18,16 @@ using nlohmann::json;
 void load_buffers(Document& document, json& root, Bytes bin) {
     if (!root.contains("buffers")) return;
     json& buffers = root["buffers"];
+    const std::vector<bool> fallback = fallback_buffers(root);
     for (std::size_t i = 0; i < buffers.size(); ++i) {
         json& buffer = buffers[i];
         const std::string place = document.place(fmt::format("/buffers/{}", i));
         const auto length = buffer["byteLength"].get<std::size_t>();
         Bytes bytes;
+        if (fallback[i]) {
+            document.buffers.emplace_back();
+            continue;
+        }
         if (buffer.contains("uri")) {
             // A data: URI may be most of the file; it is not kept twice.
             const std::string uri = std::exchange(buffer["uri"].get_ref<std::string&>(), {});
@@ -81,9 +87,11 @@ void add_size_callback(Callbacks& files) {
         };
 }
 
+constexpr int no_node = int(largest_int);
+
 // JSON -> structures. Some things that tinygltf 2.7 refuses although they are valid or harmless are
 // kept from it: buffers without content, accessors without a buffer view that serve as indices,
-// strides that are no multiple of four, spot lights with all defaults.
+// strides that are no multiple of four, spot lights with all defaults, animations of no node.
 tinygltf::Model parse_model(json root, const std::string& file) {
     for (const char* key : {"buffers", "images", "extras"}) root.erase(key);
     json& views = root["bufferViews"];
@@ -102,6 +110,10 @@ tinygltf::Model parse_model(json root, const std::string& file) {
     if (root.contains("accessors"))
         for (json& accessor : root["accessors"])
             if (!accessor.contains("bufferView")) accessor["bufferView"] = view_count;
+    if (root.contains("animations"))
+        for (json& animation : root["animations"])
+            for (json& channel : animation["channels"])
+                if (!channel["target"].contains("node")) channel["target"]["node"] = no_node;
 
     tinygltf::TinyGLTF parser;
     auto files = no_files();
@@ -119,6 +131,9 @@ tinygltf::Model parse_model(json root, const std::string& file) {
     for (std::size_t i = 0; i < view_count; ++i) model.bufferViews[i].byteStride = strides[i];
     for (tinygltf::Accessor& accessor : model.accessors)
         if (accessor.bufferView == int(view_count)) accessor.bufferView = -1;
+    for (tinygltf::Animation& animation : model.animations)
+        for (tinygltf::AnimationChannel& channel : animation.channels)
+            if (channel.target_node == no_node) channel.target_node = -1;
     return model;
 }
 
@@ -136,6 +151,8 @@ Document open_document(const std::filesystem::path& file, Losses& losses) {
     check_schema(root, document.file, losses);
     check_layout(root, document.file);
     load_buffers(document, root, parts.bin);
+    decode_meshopt(document, root);
+    decode_draco(document, root, losses);
     list_images(document, root);
     // The text of a .gltf is no longer needed; a .glb's chunk is.
     if (parts.bin.empty()) document.storage.front() = {};

@@ -1,27 +1,21 @@
-// glTF materials -> Materials.
-#include "gltf_texture.h"
+// glTF materials -> Materials: colour, alpha, light of their own, relief.
+#include "gltf_material.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace penumbra::gltf {
 namespace {
 
-const tinygltf::Value* extension(const tinygltf::Material& material, const std::string& name) {
-    const auto found = material.extensions.find(name);
-    return found == material.extensions.end() ? nullptr : &found->second;
-}
+constexpr float unreadable_grey = 0.5F;
 
 const tinygltf::Material& source_of(const Reader& reader, int index) {
     // glTF 2.0, section 3.7.2.1: what a primitive without a material has.
     static const tinygltf::Material standard;
     return index < 0 ? standard : reader.document.model.materials[std::size_t(index)];
-}
-
-Color color_of(const std::vector<double>& numbers) {
-    return {float(numbers[0]), float(numbers[1]), float(numbers[2])};
 }
 
 // What of a material is read from one of two places: the core or
@@ -31,182 +25,242 @@ struct Base {
     TextureInfo texture = {};
 };
 
-Base base_of(const tinygltf::Material& source) {
-    if (const auto* glossy = extension(source, "KHR_materials_pbrSpecularGlossiness"))
+Base base_of(const MaterialReader& read) {
+    if (const auto* glossy = read.extension("KHR_materials_pbrSpecularGlossiness"))
         return {numbers(*glossy, "diffuseFactor", {1, 1, 1, 1}),
                 texture_info(*glossy, "diffuseTexture")};
-    const auto& pbr = source.pbrMetallicRoughness;
+    const auto& pbr = read.source.pbrMetallicRoughness;
     return {pbr.baseColorFactor,
             texture_info(pbr.baseColorTexture.index, pbr.baseColorTexture.texCoord,
                          pbr.baseColorTexture.extensions)};
 }
 
-// Reads one material and says what it leaves aside.
-struct MaterialReader {
-    Reader& reader;
-    const tinygltf::Material& source;
-    std::string pointer;
-
-    void lose(const std::string& what) const { reader.lose(pointer, what); }
-    float dielectric_f0() const;
-    void surface(Material& material) const;
-    void glossy_surface(Material& material, const tinygltf::Value& glossy) const;
-    void emission(Material& material) const;
-    void transparency(Material& material, double alpha) const;
+// Extensions that change nothing while `factor` is 0.
+struct Unsupported {
+    const char* extension;
+    const char* factor;
+    const char* name;
 };
 
-// Reflectance at normal incidence: Schlick's F0 of KHR_materials_ior, scaled as
-// KHR_materials_specular says.
-float MaterialReader::dielectric_f0() const {
-    double f0 = 0.04;
-    if (const auto* ior = extension(source, "KHR_materials_ior")) {
-        const double n = number(*ior, "ior", 1.5);
-        f0 = std::pow((n - 1) / (n + 1), 2);
-    }
-    if (const auto* specular = extension(source, "KHR_materials_specular")) {
-        const auto tint = numbers(*specular, "specularColorFactor", {1, 1, 1});
-        const auto [least, most] = std::minmax_element(tint.begin(), tint.end());
-        if (*least != *most) lose("specularColorFactor is replaced by its largest channel");
-        f0 = std::min(f0 * *most, 1.0) * number(*specular, "specularFactor", 1);
-        for (const char* texture : {"specularTexture", "specularColorTexture"})
-            if (texture_info(*specular, texture).texture >= 0)
-                lose(fmt::format("{} is ignored", texture));
-    }
-    return float(f0);
+constexpr std::array unsupported = {
+    Unsupported{"KHR_materials_sheen", "sheenColorFactor", "sheen"},
+    Unsupported{"KHR_materials_anisotropy", "anisotropyStrength", "anisotropy"},
+    Unsupported{"KHR_materials_iridescence", "iridescenceFactor", "iridescence"},
+    Unsupported{"KHR_materials_diffuse_transmission", "diffuseTransmissionFactor",
+                "diffuse transmission"},
+    Unsupported{"KHR_materials_dispersion", "dispersion", "dispersion"},
+};
+
+bool is_zero(const tinygltf::Value& extension, const std::string& key) {
+    if (!extension.IsObject() || !extension.Has(key)) return true;
+    const tinygltf::Value& value = extension.Get(key);
+    if (value.IsNumber()) return value.GetNumberAsDouble() == 0;
+    return numbers(extension, key, {0, 0, 0}) == std::vector<double>{0, 0, 0};
 }
 
-void MaterialReader::surface(Material& material) const {
-    const auto& pbr = source.pbrMetallicRoughness;
-    double metallic = pbr.metallicFactor, roughness = pbr.roughnessFactor;
-    if (pbr.metallicRoughnessTexture.index >= 0) {
-        // Roughness is in green and metalness in blue.
-        if (const auto mean = texture_mean(reader, pbr.metallicRoughnessTexture.index, false)) {
-            metallic *= double(mean->z);
-            roughness *= double(mean->y);
-        }
-        lose(fmt::format("metallicRoughnessTexture is replaced by its mean: metallic {:.2f}, "
-                         "roughness {:.2f}",
-                         metallic, roughness));
+}  // namespace
+
+void Reader::lose_in_material(const std::string& pointer, const std::string& what) {
+    const auto [told, fresh] = looks.told.try_emplace(what, losses.size(), 1);
+    if (fresh) return lose(pointer, what);
+    auto& [place, times] = told->second;
+    losses[place].what = fmt::format("{} ({} times)", what, ++times);
+}
+
+Color color_of(const std::vector<double>& numbers) {
+    return {float(numbers[0]), float(numbers[1]), float(numbers[2])};
+}
+
+const tinygltf::Value* MaterialReader::extension(const std::string& name) const {
+    const auto found = source.extensions.find(name);
+    return found == source.extensions.end() ? nullptr : &found->second;
+}
+
+void MaterialReader::lose(const std::string& what) const {
+    if (textured) reader.lose_in_material(pointer, what);
+}
+
+MaterialReader::Map MaterialReader::find(const TextureInfo& info, const std::string& name,
+                                         const std::string& instead) {
+    if (!textured || info.texture < 0) return {};
+    if (raster_of(reader, info.texture) == nullptr) return {.state = Map::State::unreadable};
+    Map map = {.state = Map::State::constant, .texture = info.texture};
+    map.laid.transform = transform_of(info);
+    const auto& t = map.laid.transform;
+    if (!(std::abs(t[0] * t[4] - t[1] * t[3]) > 1e-12)) {
+        lose(fmt::format("{} {}: its KHR_texture_transform has no area", name, instead));
+    } else if (texcoord.value_or(info.texcoord) != info.texcoord) {
+        lose(fmt::format("{} {}: it has other texture coordinates than the first image", name,
+                         instead));
+    } else {
+        texcoord = info.texcoord;
+        map.state = Map::State::laid;
     }
-    set_metallic_roughness(material, float(metallic), float(roughness), dielectric_f0());
+    return map;
 }
 
-void MaterialReader::glossy_surface(Material& material, const tinygltf::Value& glossy) const {
-    const auto specular = numbers(glossy, "specularFactor", {1, 1, 1});
-    const auto [least, most] = std::minmax_element(specular.begin(), specular.end());
-    if (*least != *most) lose("specularFactor is replaced by its largest channel");
-    double f0 = *most, glossiness = number(glossy, "glossinessFactor", 1);
-    const int texture = texture_info(glossy, "specularGlossinessTexture").texture;
-    if (texture >= 0) {
-        if (const auto mean = texture_mean(reader, texture, true))
-            f0 *= double(std::max({mean->x, mean->y, mean->z}));
-        lose("specularGlossinessTexture is replaced by its mean colour");
+Color MaterialReader::mean_of(const tinygltf::Value& from, const std::string& key, bool srgb) {
+    const TextureInfo info = texture_info(from, key);
+    if (!textured || info.texture < 0) return Color(1);
+    const Raster* raster = raster_of(reader, info.texture);
+    if (raster == nullptr) return Color(1);
+    if (!constant_of({.raster = raster, .srgb = srgb}))
+        lose(fmt::format("{} is replaced by its mean", key));
+    return texture_mean(reader, info.texture, srgb).value_or(Color(1));
+}
+
+void MaterialReader::read_base() {
+    const Base given = base_of(*this);
+    material.color = color_of(given.factor);
+    alpha = given.factor[3];
+    base = find(given.texture, "baseColorTexture", "is replaced by its mean");
+    if (base.state == Map::State::unreadable) material.color *= unreadable_grey;
+    if (base.state == Map::State::constant) {
+        material.color *= texture_mean(reader, base.texture, true).value_or(Color(1));
+        alpha *= double(penumbra::mean_of({raster_of(reader, base.texture), 3}).x);
     }
-    set_metallic_roughness(material, 0, float(1 - glossiness), float(f0));
 }
 
-void MaterialReader::emission(Material& material) const {
-    if (source.emissiveFactor.size() == 3) material.emission = color_of(source.emissiveFactor);
-    if (const auto* strength = extension(source, "KHR_materials_emissive_strength"))
-        material.emission *= float(number(*strength, "emissiveStrength", 1));
-    if (source.emissiveTexture.index < 0 || material.emission == Color(0)) return;
-    // Where it cannot be read nothing shines, rather than everything.
-    material.emission *=
-        texture_mean(reader, source.emissiveTexture.index, true).value_or(Color(0));
-    lose("emissiveTexture is replaced by its mean");
-}
-
-void MaterialReader::transparency(Material& material, double alpha) const {
+// glTF 2.0, section 3.9.4: the alpha of the base colour, times that of its texture, blends or cuts.
+void MaterialReader::read_alpha() {
     if (source.alphaMode == "OPAQUE") return;
-    if (const auto* map = std::get_if<ImageMap>(&material.pattern);
-        map != nullptr && has_transparency(reader.scene.textures[map->texture].raster))
-        lose("the transparency in its base colour texture is ignored");
-    else if (source.alphaMode == "MASK" && alpha < source.alphaCutoff)
-        alpha = 0;
-    if (source.alphaMode == "MASK" && alpha > 0) return;
+    const bool cuts = source.alphaMode == "MASK";
+    const Raster* raster = base.is_laid() ? raster_of(reader, base.texture) : nullptr;
+    if (raster != nullptr && has_transparency(*raster)) {
+        const TexelSource texels = {.raster = raster, .channel = 3, .factor = Color(float(alpha))};
+        const auto [least, most] = range_of(texels);
+        const double cutoff = source.alphaCutoff;
+        if (cuts ? double(least) < cutoff && double(most) >= cutoff : least != most)
+            return cover(texels);
+        alpha = double(most);
+    }
+    if (cuts) alpha = alpha < source.alphaCutoff ? 0 : 1;
     material.opacity = float(alpha);
-    if (alpha > 0) return;
-    material.specular = 0;
-    material.reflection = Color(0);
+}
+
+// With a cutoff it, rather than every texel, is adapted to the factor.
+void MaterialReader::cover(TexelSource texels) {
+    Coverage coverage = {.map = base.laid};
+    if (source.alphaMode == "MASK") {
+        coverage.cutoff = float(source.alphaCutoff / alpha);
+        texels.factor = Color(1);
+    }
+    const float factor = texels.factor.x;
+    coverage.map.texture = derived_texture(reader, base.texture,
+                                           factor == 1 ? "alpha" : fmt::format("alpha {}", factor),
+                                           false, [&] { return grey_of(texels); });
+    material.coverage = coverage;
+}
+
+void MaterialReader::lay_base() {
+    if (!base.is_laid()) return;
+    ImageMap map = base.laid;
+    map.texture = read_texture(reader, base.texture, true);
+    material.pattern = map;
+}
+
+void MaterialReader::read_emission() {
+    if (source.emissiveFactor.size() == 3) material.emission = color_of(source.emissiveFactor);
+    if (const auto* strength = extension("KHR_materials_emissive_strength"))
+        material.emission *= float(number(*strength, "emissiveStrength", 1));
+    if (material.emission == Color(0)) return;
+    const auto& given = source.emissiveTexture;
+    Map map = find(texture_info(given.index, given.texCoord, given.extensions), "emissiveTexture",
+                   "is replaced by its mean");
+    if (map.state == Map::State::absent) return;
+    if (map.is_laid() && opaque()) {
+        map.laid.texture = read_texture(reader, map.texture, true);
+        material.emission_map = map.laid;
+        return;
+    }
+    if (map.is_laid()) lose("emissiveTexture is replaced by its mean: the surface is transparent");
+    // Where it cannot be read nothing shines, rather than everything.
+    material.emission *= map.state == Map::State::unreadable
+                             ? Color(0)
+                             : texture_mean(reader, map.texture, true).value_or(Color(0));
+}
+
+void MaterialReader::read_normal() {
+    const auto& given = source.normalTexture;
+    Map map = find(texture_info(given.index, given.texCoord, given.extensions), "normalTexture",
+                   "is ignored");
+    if (!map.is_laid() || given.scale == 0) return;
+    map.laid.texture = read_texture(reader, map.texture, false);
+    material.normal_map = NormalMap{.map = map.laid, .scale = float(given.scale)};
+}
+
+// glTF 2.0, section 3.9.3: occlusion dims indirect light, and the only one that there is here,
+// Material::ambient, is not the file's.
+void MaterialReader::name_the_rest() {
+    if (source.occlusionTexture.index >= 0)
+        lose("occlusionTexture is ignored: it would only dim indirect light");
+    for (const auto& [name, factor, what] : unsupported)
+        if (const auto* found = extension(name); found != nullptr && !is_zero(*found, factor))
+            lose(fmt::format("{} is ignored", what));
 }
 
 // KHR_materials_unlit: the base colour whatever the light. As full ambience rather than as
 // emission, which would leave out textures and vertex colours.
-void make_unlit(Material& material) {
+void MaterialReader::make_unlit() {
+    lay_base();
     material.ambient = Color(1);
     material.emission = Color(0);
     material.reflection = Color(0);
     material.diffuse = material.specular = material.metallic = 0;
 }
 
+void MaterialReader::read() {
+    read_base();
+    read_alpha();
+    if (extension("KHR_materials_unlit") != nullptr) return make_unlit();
+    read_transmission();
+    read_polish();
+    read_volume();
+    read_clearcoat();
+    read_emission();
+    read_normal();
+    name_the_rest();
+    if (alpha > 0 || material.opacity > 0) return;
+    material.specular = 0;
+    material.reflection = Color(0);
+}
+
+namespace {
+
+Index add_material(Reader& reader, int index, bool textured) {
+    const tinygltf::Material& source = source_of(reader, index);
+    MaterialReader read = {.reader = reader,
+                           .source = source,
+                           .pointer = fmt::format("/materials/{}", index),
+                           .textured = textured};
+    read.material.name = index < 0             ? "default"
+                         : source.name.empty() ? fmt::format("material{}", index)
+                                               : source.name;
+    read.material.ambient = Color(0.1F);
+    read.read();
+    if (textured && read.texcoord) reader.looks.texcoords[index] = *read.texcoord;
+    reader.scene.materials.push_back(std::move(read.material));
+    return Index(reader.scene.materials.size() - 1);
+}
+
 }  // namespace
 
-TextureUse base_texture_use(const Reader& reader, int index) {
-    const auto made = reader.materials.find(index);
-    const bool used =
-        made != reader.materials.end() &&
-        std::holds_alternative<ImageMap>(reader.scene.materials[made->second].pattern);
-    if (!used) return {};
-    const TextureInfo info = base_of(source_of(reader, index)).texture;
-    TextureUse use = {.used = true, .texcoord = info.texcoord};
-    if (info.transform == nullptr) return use;
-
-    // KHR_texture_transform: scale, then rotate, then move. A positive angle turns u towards -v.
-    const auto offset = numbers(*info.transform, "offset", {0, 0});
-    const auto scale = numbers(*info.transform, "scale", {1, 1});
-    const double angle = number(*info.transform, "rotation", 0);
-    const double c = std::cos(angle), s = std::sin(angle);
-    use.transformed = true;
-    use.transform = {scale[0] * c, -scale[0] * s, scale[1] * s, scale[1] * c, offset[0], offset[1]};
-    return use;
+TextureUse texture_use(const Reader& reader, int index) {
+    const auto found = reader.looks.texcoords.find(index);
+    if (found == reader.looks.texcoords.end()) return {};
+    return {.used = true, .texcoord = found->second};
 }
 
 Index read_material(Reader& reader, int index) {
-    if (const auto known = reader.materials.find(index); known != reader.materials.end())
-        return known->second;
-    const tinygltf::Material& source = source_of(reader, index);
-    const MaterialReader read = {reader, source, fmt::format("/materials/{}", index)};
-
-    Material material;
-    material.name = index < 0             ? "default"
-                    : source.name.empty() ? fmt::format("material{}", index)
-                                          : source.name;
-    const Base base = base_of(source);
-    material.color = color_of(base.factor);
-    material.ambient = Color(0.1F);
-    if (base.texture.texture >= 0)
-        if (const auto texture = read_texture(reader, base.texture.texture))
-            material.pattern = ImageMap{.texture = *texture};
-
-    const bool unlit = extension(source, "KHR_materials_unlit") != nullptr;
-    if (unlit) {
-        make_unlit(material);
-    } else {
-        if (const auto* glossy = extension(source, "KHR_materials_pbrSpecularGlossiness"))
-            read.glossy_surface(material, *glossy);
-        else
-            read.surface(material);
-        read.emission(material);
-        if (source.normalTexture.index >= 0) read.lose("normalTexture is ignored");
-        if (source.occlusionTexture.index >= 0) read.lose("occlusionTexture is ignored");
-    }
-    read.transparency(material, base.factor[3]);
-
-    const Index made = Index(reader.scene.materials.size());
-    reader.scene.materials.push_back(std::move(material));
-    reader.materials.emplace(index, made);
-    return made;
+    const auto known = reader.looks.materials.find(index);
+    if (known != reader.looks.materials.end()) return known->second;
+    return reader.looks.materials[index] = add_material(reader, index, true);
 }
 
-Index untextured(Reader& reader, Index material) {
-    const auto [known, fresh] =
-        reader.untextured.try_emplace(material, Index(reader.scene.materials.size()));
-    if (fresh) {
-        Material plain = reader.scene.materials[material];
-        plain.pattern = std::monostate();
-        reader.scene.materials.push_back(std::move(plain));
-    }
-    return known->second;
+Index untextured(Reader& reader, int index) {
+    const auto known = reader.looks.untextured.find(index);
+    if (known != reader.looks.untextured.end()) return known->second;
+    return reader.looks.untextured[index] = add_material(reader, index, false);
 }
 
 }  // namespace penumbra::gltf

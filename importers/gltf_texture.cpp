@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 namespace penumbra::gltf {
@@ -30,15 +31,15 @@ Sampling sampling_of(const tinygltf::Model& model, const tinygltf::Texture& text
             .bilinear = sampler.magFilter != TINYGLTF_TEXTURE_FILTER_NEAREST};
 }
 
-// The images that a texture offers, the plain one first.
+int extension_source(const tinygltf::Texture& texture, const char* extension) {
+    const auto found = texture.extensions.find(extension);
+    return found == texture.extensions.end() ? -1 : int(number(found->second, "source", -1));
+}
+
+// The images that a texture offers and that might be read, the preferred one first.
 std::vector<int> candidates(const tinygltf::Texture& texture) {
-    std::vector<int> images;
-    if (texture.source >= 0) images.push_back(texture.source);
-    const auto webp = texture.extensions.find("EXT_texture_webp");
-    if (webp != texture.extensions.end()) {
-        const int source = int(number(webp->second, "source", -1));
-        if (source >= 0) images.push_back(source);
-    }
+    std::vector<int> images = {extension_source(texture, "EXT_texture_webp"), texture.source};
+    std::erase_if(images, [](int image) { return image < 0; });
     return images;
 }
 
@@ -49,63 +50,36 @@ std::string image_name(const ImageSource& image, int index) {
     return fmt::format("texture{}", index);
 }
 
-struct Picture {
-    Raster raster = {};
-    int image = -1;
-};
+constexpr const char* ktx2 = "KTX2 images (KHR_texture_basisu) cannot be read";
 
-std::optional<Picture> decode(Reader& reader, int texture_index) {
+// The KTX 2.0 specification, section 3.1: how such a file begins.
+bool is_ktx2(const std::vector<std::byte>& file) {
+    constexpr std::string_view start = "\xabKTX 20\xbb";
+    return file.size() > start.size() && std::memcmp(file.data(), start.data(), start.size()) == 0;
+}
+
+// The image of a texture that can be read, decoded; -1, and a loss, if there is none.
+int decode(Reader& reader, int texture_index) {
     const Document& document = reader.document;
-    const auto images = candidates(document.model.textures[std::size_t(texture_index)]);
+    const auto& texture = document.model.textures[std::size_t(texture_index)];
     std::string reason = "it has no image in a format that can be read";
-    for (const int index : images) {
+    if (extension_source(texture, "KHR_texture_basisu") >= 0) reason = ktx2;
+    for (const int index : candidates(texture)) {
+        if (reader.looks.store.find(reader.scene, std::to_string(index)) != nullptr) return index;
         const ImageSource& image = document.images[std::size_t(index)];
         try {
             const auto bytes = image_bytes(document, image, "");
-            return Picture{decode_image(bytes, printable(image_name(image, index))), index};
+            if (is_ktx2(bytes)) throw Error(Failure::input, "", ktx2);
+            reader.looks.store.add(std::to_string(index),
+                                   decode_image(bytes, printable(image_name(image, index))));
+            return index;
         } catch (const Error& error) {
             reason = error.what();
         }
     }
-    reader.lose(fmt::format("/textures/{}", texture_index), "the texture is left out: " + reason);
-    return std::nullopt;
-}
-
-template <class T>
-Color mean_of(const Raster& raster, bool srgb, double largest) {
-    std::array<double, 3> sum = {};
-    std::vector<float> linear;  // by 8-bit value
-    for (int i = 0; i < 256; ++i) {
-        const float value = float(i) / 255.0F;
-        linear.push_back(srgb ? srgb_to_linear(value) : value);
-    }
-    const std::byte* at = raster.data.data();
-    for (std::size_t i = 0; i < raster.texels();
-         ++i, at += std::size_t(raster.channels) * sizeof(T))
-        for (std::size_t c = 0; c < 3; ++c) {
-            T sample;
-            std::memcpy(&sample, at + (raster.channels >= 3 ? c : 0) * sizeof(T), sizeof sample);
-            if constexpr (sizeof(T) == 1)
-                sum[c] += double(linear[sample]);
-            else if (srgb && largest > 1)
-                sum[c] += double(srgb_to_linear(float(double(sample) / largest)));
-            else
-                sum[c] += double(sample) / largest;
-        }
-    const double n = double(raster.texels());
-    return {float(sum[0] / n), float(sum[1] / n), float(sum[2] / n)};
-}
-
-template <class T>
-bool any_below(const Raster& raster, T opaque) {
-    const std::size_t channels = std::size_t(raster.channels);
-    for (std::size_t i = 0; i < raster.texels(); ++i) {
-        T alpha;
-        std::memcpy(&alpha, raster.data.data() + (i * channels + channels - 1) * sizeof(T),
-                    sizeof alpha);
-        if (alpha < opaque) return true;
-    }
-    return false;
+    reader.lose(fmt::format("/textures/{}", texture_index),
+                "the texture is left out, grey stands for its colours: " + reason);
+    return -1;
 }
 
 }  // namespace
@@ -147,51 +121,82 @@ TextureInfo texture_info(const tinygltf::Value& extension, const std::string& ke
     return info;
 }
 
-std::optional<Index> read_texture(Reader& reader, int index) {
-    const tinygltf::Model& model = reader.document.model;
-    const tinygltf::Texture& texture = model.textures[std::size_t(index)];
-    const Sampling sampling = sampling_of(model, texture);
-    const auto images = candidates(texture);
-    const std::array<int, 4> key = {images.empty() ? -1 : images.front(), int(sampling.wrap_u),
-                                    int(sampling.wrap_v), int(sampling.bilinear)};
-    if (const auto known = reader.textures.find(key); known != reader.textures.end())
-        return known->second;
+// glTF's v' = 1 - v: with u' = a u + c v + e and v' = b u + d v + f there, where scale comes first,
+// then rotation, then offset. A positive angle turns u towards -v.
+std::array<double, 6> transform_of(const TextureInfo& info) {
+    if (info.transform == nullptr) return ImageMap().transform;
+    const auto offset = numbers(*info.transform, "offset", {0, 0});
+    const auto scale = numbers(*info.transform, "scale", {1, 1});
+    const double angle = number(*info.transform, "rotation", 0);
+    const double cos = std::cos(angle), sin = std::sin(angle);
+    const double a = scale[0] * cos, b = -scale[0] * sin, c = scale[1] * sin, d = scale[1] * cos;
+    return {a, -c, c + offset[0], -b, d, 1 - d - offset[1]};
+}
 
-    auto picture = decode(reader, index);
-    if (!picture) return std::nullopt;
-    const ImageSource& image = reader.document.images[std::size_t(picture->image)];
-    const Index made = Index(reader.scene.textures.size());
-    reader.scene.textures.push_back({.name = image_name(image, picture->image),
-                                     .raster = std::move(picture->raster),
-                                     .bilinear = sampling.bilinear,
-                                     .wrap_u = sampling.wrap_u,
-                                     .wrap_v = sampling.wrap_v});
-    reader.textures.emplace(key, made);
-    return made;
+std::string key_of(const Reader& reader, int index) {
+    const tinygltf::Texture& texture = reader.document.model.textures[std::size_t(index)];
+    const Sampling sampling = sampling_of(reader.document.model, texture);
+    const auto images = candidates(texture);
+    return fmt::format("{}:{}{}{}", images.empty() ? -1 : images.front(), int(sampling.wrap_u),
+                       int(sampling.wrap_v), int(sampling.bilinear));
+}
+
+Texture frame_of(const Reader& reader, int index) {
+    const tinygltf::Model& model = reader.document.model;
+    const Sampling sampling = sampling_of(model, model.textures[std::size_t(index)]);
+    const auto image = reader.looks.images.find(index);
+    const int source = image == reader.looks.images.end() ? -1 : image->second;
+    return {.name = source < 0 ? fmt::format("texture{}", index)
+                               : image_name(reader.document.images[std::size_t(source)], source),
+            .bilinear = sampling.bilinear,
+            .wrap_u = sampling.wrap_u,
+            .wrap_v = sampling.wrap_v};
+}
+
+const Raster* raster_of(Reader& reader, int index) {
+    Looks& looks = reader.looks;
+    const auto known = looks.images.find(index);
+    if (known != looks.images.end() && known->second < 0) return nullptr;
+    if (known != looks.images.end())
+        if (const Raster* raster = looks.store.find(reader.scene, std::to_string(known->second)))
+            return raster;
+    const int image = looks.images[index] = decode(reader, index);
+    return image < 0 ? nullptr : looks.store.find(reader.scene, std::to_string(image));
+}
+
+Index read_texture(Reader& reader, int index, bool srgb) {
+    Looks& looks = reader.looks;
+    const std::string key = key_of(reader, index) + (srgb ? " color" : " data");
+    if (const auto known = looks.textures.find(key); known != looks.textures.end())
+        return known->second;
+    if (raster_of(reader, index) == nullptr)  // the file has changed meanwhile
+        throw Error(Failure::input, reader.document.place(fmt::format("/textures/{}", index)),
+                    "its image cannot be read again");
+    Texture frame = frame_of(reader, index);
+    frame.srgb = srgb;
+    const std::string image = std::to_string(looks.images[index]);
+    return looks.textures[key] = looks.store.place(reader.scene, image, std::move(frame));
+}
+
+Index derived_texture(Reader& reader, int index, const std::string& use, bool srgb,
+                      const std::function<Raster()>& make) {
+    const std::string key = key_of(reader, index) + ' ' + use;
+    if (const auto known = reader.looks.textures.find(key); known != reader.looks.textures.end())
+        return known->second;
+    Texture texture = frame_of(reader, index);
+    texture.name += '_' + use.substr(0, use.find(' '));
+    texture.srgb = srgb;
+    texture.raster = make();
+    reader.scene.textures.push_back(std::move(texture));
+    return reader.looks.textures[key] = Index(reader.scene.textures.size() - 1);
 }
 
 std::optional<Color> texture_mean(Reader& reader, int index, bool srgb) {
-    const auto known = reader.means.find({index, srgb});
-    if (known != reader.means.end()) return known->second;
-    const auto picture = decode(reader, index);
-    if (!picture || picture->raster.texels() == 0) return std::nullopt;
-    Color mean(0);
-    switch (picture->raster.depth) {
-    case Depth::u8: mean = mean_of<std::uint8_t>(picture->raster, srgb, 255); break;
-    case Depth::u16: mean = mean_of<std::uint16_t>(picture->raster, srgb, 65535); break;
-    case Depth::f32: mean = mean_of<float>(picture->raster, srgb, 1); break;
-    }
-    return reader.means[{index, srgb}] = mean;
-}
-
-bool has_transparency(const Raster& raster) {
-    if (raster.channels != 2 && raster.channels != 4) return false;
-    switch (raster.depth) {
-    case Depth::u8: return any_below<std::uint8_t>(raster, 255);
-    case Depth::u16: return any_below<std::uint16_t>(raster, 65535);
-    case Depth::f32: return any_below<float>(raster, 1);
-    }
-    return false;
+    const auto known = reader.looks.means.find({index, srgb});
+    if (known != reader.looks.means.end()) return known->second;
+    const Raster* raster = raster_of(reader, index);
+    if (raster == nullptr) return std::nullopt;
+    return reader.looks.means[{index, srgb}] = mean_of({.raster = raster, .srgb = srgb});
 }
 
 }  // namespace penumbra::gltf

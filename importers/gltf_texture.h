@@ -2,7 +2,9 @@
 #pragma once
 
 #include "gltf.h"
+#include "texels.h"
 
+#include <functional>
 #include <optional>
 
 namespace penumbra::gltf {
@@ -23,13 +25,28 @@ double number(const tinygltf::Value& object, const std::string& key, double fall
 std::vector<double> numbers(const tinygltf::Value& object, const std::string& key,
                             std::vector<double> fallback);
 
-/// The Scene's texture for glTF texture `index`; none, and a loss, if no image of it can be read.
-std::optional<Index> read_texture(Reader& reader, int index);
+/// Where the image is looked up: KHR_texture_transform for coordinates whose v runs up.
+std::array<double, 6> transform_of(const TextureInfo& info);
 
-/// The mean of a texture's RGB, linear; none, and a loss, if no image of it can be read.
+/// The name and the sampling of glTF texture `index`, without samples.
+Texture frame_of(const Reader& reader, int index);
+
+/// The decoded image of glTF texture `index`; none, and a loss, if it cannot be read. It stays as
+/// ImageStore says.
+const Raster* raster_of(Reader& reader, int index);
+
+/// The Scene's texture for glTF texture `index`. Precondition: raster_of() gives its image.
+Index read_texture(Reader& reader, int index, bool srgb);
+
+/// A texture that `make` derives from that image; `use`, whose first word ends its name, and `srgb`
+/// tell it from others.
+Index derived_texture(Reader& reader, int index, const std::string& use, bool srgb,
+                      const std::function<Raster()>& make);
+
+/// The mean of a texture's RGB, linear; none, and a loss, if its image cannot be read.
 std::optional<Color> texture_mean(Reader& reader, int index, bool srgb);
 
-/// True when some texel is not opaque.
-bool has_transparency(const Raster& raster);
+/// What tells the images and samplings of textures apart.
+std::string key_of(const Reader& reader, int index);
 
 }  // namespace penumbra::gltf

@@ -1,6 +1,7 @@
 // All inputs of one picture -> one complete scene.
 #include "complete.h"
 #include "merge.h"
+#include "normal_map.h"
 #include "sidecar.h"
 #include "suggest.h"
 
@@ -12,6 +13,9 @@
 namespace penumbra {
 
 namespace {
+
+// Of all meshes with normal maps together: POV-Ray reads about 100,000 facets a second.
+constexpr std::size_t most_baked_facets = 100'000;
 
 namespace fs = std::filesystem;
 
@@ -27,8 +31,8 @@ std::string extension_of(const fs::path& file) {
     return text;
 }
 
-Imported read_model(const fs::path& file) {
-    return extension_of(file) == ".obj" ? read_obj(file) : read_gltf(file);
+Imported read_model(const fs::path& file, const ModelOptions& options) {
+    return extension_of(file) == ".obj" ? read_obj(file) : read_gltf(file, options);
 }
 
 /// What is to be read, in the order in which it is laid over the scene.
@@ -77,7 +81,8 @@ struct Replacement {
 };
 
 // Reads every file once for each material that it gets, and places it as often as it is named.
-std::vector<Replacement> load_models(const std::vector<Placement>& placements, Imported& result) {
+std::vector<Replacement> load_models(const std::vector<Placement>& placements,
+                                     const ModelOptions& options, Imported& result) {
     std::map<std::pair<fs::path, std::string>, Model> known;
     std::vector<Replacement> replacements;
     for (const Placement& placement : placements) {
@@ -88,7 +93,8 @@ std::vector<Replacement> load_models(const std::vector<Placement>& placements, I
                                    placement.material ? placement.material->name : "");
         auto found = known.find(key);
         if (found == known.end()) {
-            found = known.emplace(key, add_model(result, read_model(placement.file))).first;
+            found =
+                known.emplace(key, add_model(result, read_model(placement.file, options))).first;
             if (placement.material)
                 replacements.push_back(
                     {found->second.mesh, found->second.meshes, *placement.material});
@@ -135,6 +141,17 @@ void drop_images_without_texcoords(Imported& result) {
     }
 }
 
+// Some images can only vary opaque surfaces; a sidecar may have made theirs translucent.
+void drop_maps_of_translucent_materials(Imported& result) {
+    for (Material& m : result.scene.materials) {
+        if (m.opacity == 1 || (!m.gloss && !m.emission_map)) continue;
+        m.gloss.reset();
+        m.emission_map.reset();
+        result.losses.push_back({fmt::format("material '{}'", m.name),
+                                 "its gloss and emission images are dropped: it is translucent"});
+    }
+}
+
 // A setting of a material that nobody has is a typing error.
 void check_used(const NewMaterials& made, const Scene& scene) {
     for (const auto& [index, reference] : made) {
@@ -157,19 +174,21 @@ void set_penumbra(Scene& scene, double delta) {
     for (Light& light : scene.lights) light.penumbra.delta = delta;
 }
 
-void lay_layers(const Request& request, Imported& result) {
+void lay_layers(const Request& request, const ModelOptions& options, Imported& result) {
     Scene& scene = result.scene;
     TextureFiles files;
     NewMaterials made;
-    const auto replacements = load_models(request.models, result);
+    const auto replacements = load_models(request.models, options, result);
+    result.auto_exposure = !scene.lights.empty();  // a glTF file's
     request.for_each_layer([&](const Layer& layer) { lay_materials(layer, scene, files, made); });
     replace_materials(replacements, scene);
     request.for_each_layer([&](const Layer& layer) {
-        lay_globals(layer, scene, result.render);
+        lay_globals(layer, result, files);
         lay_objects(layer, scene);
         lay_lights(layer, scene);
     });
     drop_images_without_texcoords(result);
+    drop_maps_of_translucent_materials(result);
 
     const double aspect = double(result.render.width) / result.render.height;
     const Bounds box = stage(scene);
@@ -177,6 +196,11 @@ void lay_layers(const Request& request, Imported& result) {
     request.for_each_layer(
         [&](const Layer& layer) { lay_camera(layer, scene, aims, box, aspect); });
     complete(scene, aspect);
+    if (const std::size_t count = drop_coincident_facets(scene); count > 0)
+        result.losses.push_back(
+            {"facets", fmt::format("{} that lie exactly on others are left out: which of them "
+                                   "shows would be a matter of rounding",
+                                   count)});
     check_used(made, scene);
     // After complete(), so that the rig's lights can be changed as well.
     for (const Layer& layer : request.settings) edit_lights(layer, scene);
@@ -189,6 +213,15 @@ bool is_model(const fs::path& file) {
     return extension == ".gltf" || extension == ".glb" || extension == ".obj";
 }
 
+Losses settle_normal_maps(Scene& scene, NormalMaps choice) {
+    switch (choice) {
+    case NormalMaps::bake: return bake_normal_maps(scene, {.facets = most_baked_facets});
+    case NormalMaps::drop: return drop_normal_maps(scene);
+    case NormalMaps::pixel: complete_tangents(scene); break;
+    }
+    return {};
+}
+
 Imported load_scene(const std::vector<fs::path>& inputs, const LoadOptions& options) {
     if (inputs.empty() && !options.sidecar) throw Error(Failure::usage, "", "no input is given");
     if (options.penumbra && !(std::isfinite(*options.penumbra) && *options.penumbra >= 0))
@@ -196,13 +229,15 @@ Imported load_scene(const std::vector<fs::path>& inputs, const LoadOptions& opti
                     fmt::format("must be a finite number of 0 or more, not {}", *options.penumbra));
     const Request request = read_request(inputs, options);
     Imported result;
-    lay_layers(request, result);
+    lay_layers(request, options.model, result);
     for (const Layer& layer : request.sidecars)
         result.models.push_back({.file = layer.name, .format = "sidecar"});
     if (options.penumbra) set_penumbra(result.scene, *options.penumbra);
     if (const auto found = defects(result.scene); !found.empty())
         throw Error(Failure::input, inputs.empty() ? options.sidecar->string() : inputs[0].string(),
                     found[0]);
+    const Losses settled = settle_normal_maps(result.scene, options.normal_maps);
+    result.losses.insert(result.losses.end(), settled.begin(), settled.end());
     return result;
 }
 

@@ -17,6 +17,16 @@ void shift(Index& index, std::size_t by) {
     if (index != no_index) index += Index(by);
 }
 
+void shift_textures(Material& material, std::size_t by) {
+    if (auto* map = std::get_if<ImageMap>(&material.pattern)) shift(map->texture, by);
+    if (material.emission_map) shift(material.emission_map->texture, by);
+    if (material.coverage) shift(material.coverage->map.texture, by);
+    if (material.normal_map) shift(material.normal_map->map.texture, by);
+    if (!material.gloss) return;
+    shift(material.gloss->color.texture, by);
+    shift(material.gloss->level.texture, by);
+}
+
 Vec3 turned(const Vec3& direction, const Matrix& transform) {
     Vec3 result(0);
     transform.multDirMatrix(direction, result);
@@ -49,9 +59,7 @@ Model add_model(Imported& whole, Imported&& part) {
     Scene& to = whole.scene;
     Scene& from = part.scene;
     const Model range = {.mesh = to.meshes.size(), .meshes = from.meshes.size()};
-    for (Material& material : from.materials)
-        if (auto* map = std::get_if<ImageMap>(&material.pattern))
-            shift(map->texture, to.textures.size());
+    for (Material& material : from.materials) shift_textures(material, to.textures.size());
     for (Mesh& mesh : from.meshes) shift(mesh.material, to.materials.size());
     for (Instance& instance : from.instances) shift(instance.mesh, to.meshes.size());
     append(to.materials, from.materials);

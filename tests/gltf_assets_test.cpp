@@ -39,6 +39,12 @@ std::vector<std::string> importer_defects(Scene scene) {
     return defects(scene);
 }
 
+// The makers' number is that of one of the 125 instances.
+std::size_t expected_facets(const Asset& asset) {
+    const std::size_t facets = std::stoul(asset.at("scene_triangles"));
+    return asset.at("file").ends_with("/SimpleInstancing.glb") ? 125 * facets : facets;
+}
+
 }  // namespace
 
 TEST_CASE("glTF assets, give the number of facets that their makers say") {
@@ -54,10 +60,14 @@ TEST_CASE("glTF assets, give the number of facets that their makers say") {
         }
         std::optional<Imported> imported;
         const std::string problem = test::message_of([&] { imported = read(); });
-        if (!imported && asset.at("expect") == "load-or-refuse") continue;
+        if (asset.at("file").ends_with("/box-shared-image-references-separate.gltf")) {
+            CHECK(problem.ends_with("the model needs the extension KHR_techniques_webgl, which is "
+                                    "not supported"));
+            continue;
+        }
         CHECK(problem == "");
         if (!imported) continue;
-        CHECK(facet_count(imported->scene) == std::stoul(asset.at("scene_triangles")));
+        CHECK(facet_count(imported->scene) == expected_facets(asset));
         CHECK(importer_defects(imported->scene) == std::vector<std::string>{});
     }
 }

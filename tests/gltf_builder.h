@@ -60,7 +60,9 @@ struct Gltf {
 
     template <class T>
     int accessor(const std::string& type, const std::vector<T>& values, const json& members = {}) {
-        const std::size_t width = type == "SCALAR" ? 1 : std::size_t(type.back() - '0');
+        const std::size_t width = type == "SCALAR" ? 1
+                                  : type == "MAT4" ? 16
+                                                   : std::size_t(type.back() - '0');
         json accessor = {{"bufferView", view(values)},
                          {"componentType", component_type<T>()},
                          {"count", values.size() / width},
@@ -118,7 +120,8 @@ inline Gltf triangle() {
 /// Reads `content` from a file box.gltf (or box.glb) in a folder of its own. In messages the folder
 /// is left out.
 inline penumbra::Imported read_content(const std::string& content,
-                                       const std::string& name = "box.gltf") {
+                                       const std::string& name = "box.gltf",
+                                       const penumbra::ModelOptions& options = {}) {
     const TempDir folder;
     const fs::path file = write(folder / name, content);
     const auto cut = [&](std::string text) {
@@ -128,14 +131,16 @@ inline penumbra::Imported read_content(const std::string& content,
         return text;
     };
     try {
-        auto imported = penumbra::read_gltf(file);
+        auto imported = penumbra::read_gltf(file, options);
         for (auto& loss : imported.losses) loss = {cut(loss.place), cut(loss.what)};
         return imported;
     } catch (const penumbra::Error& error) {
         throw penumbra::Error(error.failure, "", cut(error.what()));
     }
 }
-inline penumbra::Imported read(const Gltf& gltf) { return read_content(gltf.text()); }
+inline penumbra::Imported read(const Gltf& gltf, const penumbra::ModelOptions& options = {}) {
+    return read_content(gltf.text(), "box.gltf", options);
+}
 
 /// The message of the Error that reading throws.
 inline std::string problem(const std::string& content, const std::string& name = "box.gltf") {

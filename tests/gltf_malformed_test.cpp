@@ -248,12 +248,3 @@ TEST_CASE("Malformed glTF, may be nested without end") {
     CHECK(imported.losses ==
           Losses{{"box.gltf", "what is nested more than 64 levels deep is ignored"}});
 }
-
-TEST_CASE("Malformed glTF, is told when its data is compressed") {
-    Gltf gltf = triangle();
-    gltf.root["accessors"][0].erase("bufferView");
-    gltf.root["meshes"][0]["primitives"][0]["extensions"] = {
-        {"KHR_draco_mesh_compression", {{"bufferView", 0}, {"attributes", json::object()}}}};
-    CHECK(problem(gltf) == "box.gltf#/meshes/0/primitives/0: is compressed with "
-                           "KHR_draco_mesh_compression, which is not supported");
-}

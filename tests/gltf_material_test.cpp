@@ -1,58 +1,13 @@
-// Materials and textures of glTF.
-#include "gltf_builder.h"
-
-#include <cmath>
+// Materials of glTF: colour, alpha, light of their own, relief, and what is lost.
+#include "gltf_looks.h"
 
 using namespace penumbra;
 using test::Gltf;
 using test::json;
+using test::material_of;
+using test::picture;
 using test::read;
-
-namespace {
-
-// A triangle with texture coordinates and one material.
-Gltf with_material(const json& material) {
-    Gltf gltf = test::triangle();
-    json& primitive = gltf.root["meshes"][0]["primitives"][0];
-    primitive["attributes"]["TEXCOORD_0"] =
-        gltf.accessor("VEC2", std::vector<float>{0, 0, 1, 0, 0, 0.25F});
-    primitive["material"] = gltf.add("materials", material);
-    return gltf;
-}
-
-Material material_of(const json& material) {
-    return read(with_material(material)).scene.materials.at(0);
-}
-
-std::string data_uri(const std::vector<std::byte>& png) {
-    return "data:image/png;base64," +
-           test::base64({reinterpret_cast<const char*>(png.data()), png.size()});
-}
-
-// Two texels, the left one `left` and the right one black.
-json picture(const Color& left) {
-    Image image(2, 1);
-    image.at(0, 0) = left;
-    return {{"uri", data_uri(encode_png(image))}};
-}
-
-// The bytes of a 1 x 1 PNG with alpha.
-json transparent_picture() {
-    const test::TempDir folder;
-    Raster raster = {.width = 1, .height = 1, .channels = 4, .data = {}};
-    for (const int sample : {255, 0, 0, 128}) raster.data.push_back(std::byte(sample));
-    save_raster(folder / "a.png", raster);
-    return {{"uri", "data:image/png;base64," + test::base64(test::read(folder / "a.png"))}};
-}
-
-const json textured = {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}};
-
-Index texture_of(const Material& material) {
-    const auto* map = std::get_if<ImageMap>(&material.pattern);
-    return map != nullptr ? map->texture : no_index;
-}
-
-}  // namespace
+using test::with_material;
 
 TEST_CASE("glTF materials, map the core factors") {
     const Material given = material_of({{"name", "brass"},
@@ -142,146 +97,82 @@ TEST_CASE("glTF materials, blend or cut by the alpha of the base colour") {
 }
 
 TEST_CASE("glTF materials, name every feature that is left aside") {
-    Gltf gltf =
-        with_material({{"emissiveFactor", {1, 1, 1}},
-                       {"emissiveTexture", {{"index", 0}}},
-                       {"normalTexture", {{"index", 0}}},
-                       {"occlusionTexture", {{"index", 0}}},
-                       {"pbrMetallicRoughness", {{"metallicRoughnessTexture", {{"index", 0}}}}}});
+    const json extensions = {
+        {"KHR_materials_sheen", {{"sheenColorFactor", {1, 0, 0}}}},
+        {"KHR_materials_anisotropy", {{"anisotropyStrength", 0.5}}},
+        {"KHR_materials_iridescence", {{"iridescenceFactor", 1}}},
+        {"KHR_materials_diffuse_transmission", {{"diffuseTransmissionFactor", 1}}},
+        {"KHR_materials_dispersion", {{"dispersion", 0.1}}}};
+    Gltf gltf = with_material({{"occlusionTexture", {{"index", 0}}}, {"extensions", extensions}});
+    gltf.add("images", picture({1, 0.5F, 0}));
+    gltf.add("textures", {{"source", 0}});
+    for (const auto& [name, value] : extensions.items())
+        gltf.root["extensionsUsed"].push_back(name);
+    const std::string place = "box.gltf#/materials/0";
+    CHECK(read(gltf).losses ==
+          Losses{{place, "occlusionTexture is ignored: it would only dim indirect light"},
+                 {place, "sheen is ignored"},
+                 {place, "anisotropy is ignored"},
+                 {place, "iridescence is ignored"},
+                 {place, "diffuse transmission is ignored"},
+                 {place, "dispersion is ignored"}});
+    CHECK(material_of({{"extensions", {{"KHR_materials_iridescence", {{"iridescenceIor", 2}}}}}})
+              .name == "material0");
+}
+
+TEST_CASE("glTF materials, say once what several of them lose") {
+    const json sheen = {
+        {"extensions", {{"KHR_materials_sheen", {{"sheenColorFactor", {1, 0, 0}}}}}}};
+    Gltf gltf = with_material(sheen);
+    for (int i = 0; i < 2; ++i) {
+        json primitive = gltf.root["meshes"][0]["primitives"][0];
+        primitive["material"] = gltf.add("materials", sheen);
+        gltf.root["meshes"][0]["primitives"].push_back(primitive);
+    }
+    CHECK(read(gltf).losses == Losses{{"box.gltf#/materials/0", "sheen is ignored (3 times)"}});
+    // Nothing is lost where the extension has no effect.
+    CHECK(read(with_material({{"extensions", {{"KHR_materials_sheen", json::object()}}}}))
+              .losses.empty());
+}
+
+TEST_CASE("glTF materials, shine by an image of their own") {
+    json material = {
+        {"emissiveFactor", {1, 0.5, 0}},
+        {"emissiveTexture", {{"index", 0}}},
+        {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 4}}}}}};
+    Gltf gltf = with_material(material);
+    gltf.add("images", picture({1, 0.5F, 0}));
+    gltf.add("textures", {{"source", 0}});
+    const Imported opaque = read(gltf);
+    CHECK(opaque.losses.empty());
+    REQUIRE(opaque.scene.materials[0].emission_map);
+    CHECK(opaque.scene.materials[0].emission == Color(4, 2, 0));
+    CHECK(opaque.scene.textures.at(opaque.scene.materials[0].emission_map->texture).srgb);
+
+    material["alphaMode"] = "BLEND";
+    material["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, 0.5};
+    gltf.root["materials"][0] = material;
+    const Imported glass = read(gltf);
+    CHECK(glass.losses == Losses{{"box.gltf#/materials/0", "emissiveTexture is replaced by its "
+                                                           "mean: the surface is transparent"}});
+    CHECK_FALSE(glass.scene.materials[0].emission_map);
+    CHECK(glass.scene.materials[0].emission.x == Approx(2));  // half of the texels are black
+
+    gltf.root["images"][0] = {{"uri", "none.png"}};
+    CHECK(read(gltf).scene.materials[0].emission == Color(0));
+}
+
+TEST_CASE("glTF materials, have normal maps with their scale") {
+    Gltf gltf = with_material({{"normalTexture", {{"index", 0}, {"scale", 0.5}}}});
     gltf.add("images", picture({1, 0.5F, 0}));
     gltf.add("textures", {{"source", 0}});
     const Imported imported = read(gltf);
-    const std::string place = "box.gltf#/materials/0";
-    // Half of the texels are black; roughness is stored as sRGB's 188 of 255.
-    CHECK(imported.losses == Losses{{place, "metallicRoughnessTexture is replaced by its mean: "
-                                            "metallic 0.00, roughness 0.37"},
-                                    {place, "emissiveTexture is replaced by its mean"},
-                                    {place, "normalTexture is ignored"},
-                                    {place, "occlusionTexture is ignored"}});
-    const Material& material = imported.scene.materials[0];
-    CHECK(material.metallic == 0);
-    CHECK(material.emission.x == Approx(0.5));
-    CHECK(material.emission.y == Approx(0.25).margin(0.005));
-    CHECK(imported.scene.textures.empty());
-}
-
-TEST_CASE("glTF textures, are decoded, flipped and sampled as the file says") {
-    Gltf gltf = with_material(textured);
-    gltf.add("images", picture({1, 0, 0}));
-    gltf.root["images"][0]["name"] = "stripe";
-    gltf.add("samplers", {{"magFilter", 9728}, {"wrapS", 33071}, {"wrapT", 33648}});
-    gltf.add("textures", {{"source", 0}, {"sampler", 0}});
-    const Scene scene = read(gltf).scene;
-    REQUIRE(scene.textures.size() == 1);
-    const Texture& texture = scene.textures[0];
-    CHECK(texture_of(scene.materials[0]) == 0);
-    CHECK(texture.name == "stripe");
-    CHECK(texture.raster.width == 2);
-    CHECK(texture.raster.height == 1);
-    CHECK(texture.raster.data.at(0) == std::byte(255));
-    CHECK(texture.srgb);
-    CHECK_FALSE(texture.bilinear);
-    CHECK(texture.wrap_u == Wrap::clamp);
-    CHECK(texture.wrap_v == Wrap::mirror);
-    CHECK(scene.meshes[0].texcoords == std::vector<Vec2f>{{0, 1}, {1, 1}, {0, 0.75F}});
-
-    gltf.root["textures"][0].erase("sampler");
-    const Texture plain = read(gltf).scene.textures.at(0);
-    CHECK(plain.bilinear);
-    CHECK(plain.wrap_u == Wrap::repeat);
-}
-
-TEST_CASE("glTF textures, come from files and from buffer views") {
-    Image image(1, 1);
-    image.at(0, 0) = Color(1);
-    const auto png = encode_png(image);
-    Gltf gltf = with_material(textured);
-    const int view = gltf.view(std::vector<std::byte>(png));
-    gltf.add("images", {{"bufferView", view}, {"mimeType", "image/png"}});
-    gltf.add("textures", {{"source", 0}});
-    CHECK(test::read_content(gltf.glb(), "box.glb").scene.textures.size() == 1);
-
-    test::TempDir folder;
-    gltf.root["images"][0] = {{"uri", "two%20words.png"}};
-    save_image(folder / "two words.png", image);
-    const auto scene = read_gltf(test::write(folder / "box.gltf", gltf.text())).scene;
-    CHECK(scene.textures.at(0).name == "two%20words");
-}
-
-TEST_CASE("glTF textures, are one for one image and sampling") {
-    Gltf gltf = with_material(textured);
-    gltf.add("images", picture({1, 0, 0}));
-    gltf.add("samplers", {{"wrapS", 33071}});
-    gltf.root["textures"] = {{{"source", 0}}, {{"source", 0}}, {{"source", 0}, {"sampler", 0}}};
-    for (int i = 1; i < 3; ++i) {
-        json primitive = gltf.root["meshes"][0]["primitives"][0];
-        primitive["material"] = gltf.add("materials", textured);
-        gltf.root["materials"][i]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = i;
-        gltf.root["meshes"][0]["primitives"].push_back(primitive);
-    }
-    const Scene scene = read(gltf).scene;
-    CHECK(scene.textures.size() == 2);
-    CHECK(texture_of(scene.materials[0]) == texture_of(scene.materials[1]));
-    CHECK(texture_of(scene.materials[0]) != texture_of(scene.materials[2]));
-}
-
-TEST_CASE("glTF textures, leave the plain colour where the image cannot be read") {
-    const auto loss_of = [](const json& image) {
-        Gltf gltf = with_material(textured);
-        gltf.add("images", image);
-        gltf.add("textures", {{"source", 0}});
-        const Imported imported = read(gltf);
-        CHECK(imported.scene.textures.empty());
-        CHECK(texture_of(imported.scene.materials.at(0)) == no_index);
-        REQUIRE(imported.losses.size() == 1);
-        CHECK(imported.losses[0].place == "box.gltf#/textures/0");
-        return imported.losses[0].what;
-    };
-    CHECK(loss_of({{"uri", "none.png"}}) == "the texture is left out: none.png: no such file");
-    CHECK(loss_of({{"uri", "../../etc/passwd"}}) ==
-          "the texture is left out: the uri '../../etc/passwd' leads out of the model's folder");
-    CHECK_THAT(loss_of({{"uri", "data:image/png;base64,AAAA"}}),
-               Catch::Matchers::StartsWith("the texture is left out: "));
-}
-
-TEST_CASE("glTF textures, are placed by KHR_texture_transform") {
-    Gltf gltf = with_material(textured);
-    gltf.add("images", picture({1, 0, 0}));
-    gltf.add("textures", {{"source", 0}});
-    gltf.root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] =
-        gltf.accessor("VEC2", std::vector<float>{0, 0, 1, 0, 0, 1});
-    gltf.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] = {
-        {"KHR_texture_transform",
-         {{"offset", {0.5, 0}}, {"rotation", std::acos(0.0)}, {"scale", {2, 3}}, {"texCoord", 1}}}};
-    const auto texcoords = read(gltf).scene.meshes.at(0).texcoords;
-    REQUIRE(texcoords.size() == 3);
-    // A quarter turn counter-clockwise as one sees the image: +u becomes up, and glTF's +v, which
-    // is down, becomes +u.
-    CHECK((texcoords[0] - Vec2f(0.5F, 1)).length() < 1e-6F);
-    CHECK((texcoords[1] - Vec2f(0.5F, 3)).length() < 1e-6F);
-    CHECK((texcoords[2] - Vec2f(3.5F, 1)).length() < 1e-6F);
-}
-
-TEST_CASE("glTF textures, are left out where the mesh has no coordinates for them") {
-    Gltf gltf = with_material(textured);
-    gltf.add("images", picture({1, 0, 0}));
-    gltf.add("textures", {{"source", 0}});
-    gltf.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 4;
-    const Imported imported = read(gltf);
-    const Mesh& mesh = imported.scene.meshes.at(0);
-    CHECK(texture_of(imported.scene.materials.at(mesh.material)) == no_index);
-    CHECK(imported.losses == Losses{{"box.gltf#/meshes/0/primitives/0",
-                                     "it has no TEXCOORD_4; its texture is left out"}});
-}
-
-TEST_CASE("glTF textures, name transparency that is not shown") {
-    json material = textured;
-    material["alphaMode"] = "BLEND";
-    Gltf gltf = with_material(material);
-    gltf.add("textures", {{"source", 0}});
-    gltf.root["images"] = json::array({transparent_picture()});
-    CHECK(read(gltf).losses == Losses{{"box.gltf#/materials/0",
-                                       "the transparency in its base colour texture is ignored"}});
-    gltf.root["images"] = json::array({picture({1, 0, 0})});
-    CHECK(read(gltf).losses.empty());
+    CHECK(imported.losses.empty());
+    const auto& map = imported.scene.materials[0].normal_map;
+    REQUIRE(map);
+    CHECK(map->scale == 0.5F);
+    CHECK_FALSE(imported.scene.textures.at(map->map.texture).srgb);
+    CHECK(imported.scene.meshes[0].texcoords.size() == 3);
+    gltf.root["materials"][0]["normalTexture"]["scale"] = 0;
+    CHECK_FALSE(read(gltf).scene.materials[0].normal_map);
 }

@@ -73,6 +73,27 @@ TEST_CASE("glTF meshes, count the points and lines that they leave out") {
     CHECK(loss(3) == "5 lines are ignored");
 }
 
+TEST_CASE("glTF meshes, name what many primitives lose once") {
+    Gltf gltf;
+    const json attributes = {{"POSITION", gltf.accessor("VEC3", band)}};
+    const json lines = {{"attributes", attributes}, {"mode", 1}},
+               points = {{"attributes", attributes}, {"mode", 0}};
+    gltf.show(points);
+    gltf.show(lines);
+    gltf.show({{"attributes", attributes}, {"mode", 3}});
+    json colored = {{"attributes", attributes}};
+    colored["attributes"]["COLOR_1"] = colored["attributes"]["COLOR_2"] = 0;
+    gltf.root["meshes"][1]["primitives"].push_back(colored);
+    gltf.root["meshes"][2]["primitives"].push_back(colored);
+    CHECK(read(gltf).losses ==
+          Losses{{"box.gltf#/meshes/0/primitives/0", "6 points are ignored"},
+                 {"box.gltf#/meshes/1/primitives/0", "8 lines are ignored (in 2 primitives)"},
+                 {"box.gltf#/meshes/1/primitives/1",
+                  "its COLOR_1 is ignored; only COLOR_0 has a meaning (in 2 primitives)"},
+                 {"box.gltf#/meshes/1/primitives/1",
+                  "its COLOR_2 is ignored; only COLOR_0 has a meaning (in 2 primitives)"}});
+}
+
 TEST_CASE("glTF meshes, read and normalise every component type") {
     const auto first = [](const std::vector<Vec2f>& texcoords) {
         REQUIRE(texcoords.size() == 3);

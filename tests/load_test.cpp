@@ -217,6 +217,8 @@ TEST_CASE("A model's first camera is the active one until another is picked by n
     CHECK(picked.cameras.at(picked.camera).name == "Side");
     const Scene again = inputs.set({"stage.gltf", "a.toml"}, {"camera.name=Front"}).scene;
     CHECK(again.cameras.at(again.camera).name == "Front");
+    const Scene second = inputs.set({"stage.gltf"}, {"camera.name=\"1\""}).scene;
+    CHECK(second.cameras.at(second.camera).name == "Side");
     CHECK(inputs.set_problem({"stage.gltf"}, "camera.name=Frnt") ==
           "--set camera.name=Frnt: no camera 'Frnt' (did you mean 'Front'?)");
     CHECK(inputs.set_problem({"stage.gltf"}, "camera.name=Top") ==
@@ -275,4 +277,50 @@ TEST_CASE("Models of several inputs share one scene") {
     CHECK(scene.lights.size() == 1);
     CHECK(result.models.size() == 3);
     CHECK(defects(scene).empty());
+}
+
+TEST_CASE("The light of a glTF file asks for an exposure unless somebody gives one") {
+    Studio inputs;
+    inputs.file("stage.gltf", stage).file("facet.obj", triangle);
+    const auto asks = [&](const std::vector<std::string>& names,
+                          const std::vector<std::string>& settings = {}) {
+        return inputs.set(names, settings).auto_exposure;
+    };
+    CHECK(asks({"stage.gltf", "facet.obj"}));
+    CHECK(asks({"stage.gltf", "studio.toml"}));
+    CHECK_FALSE(asks({"stage.gltf"}, {"render.exposure=2"}));
+    CHECK_FALSE(asks({"facet.obj"}));
+    CHECK_FALSE(asks({"studio.toml"}));
+    CHECK(asks({"studio.toml"}, {"render.exposure=auto"}));
+    CHECK(inputs.set_problem({"studio.toml"}, "render.exposure=bright") ==
+          "--set render.exposure=bright: 'exposure' in [render] must be a number or \"auto\"");
+}
+
+TEST_CASE("Normal maps are baked, dropped or kept as the caller wants") {
+    Scene scene;
+    scene.meshes = {{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+                     .normals = std::vector(3, Vec3f(0, 0, 1)),
+                     .texcoords = {{0, 0}, {1, 0}, {0, 1}},
+                     .triangles = {{0, 1, 2}},
+                     .material = 0}};
+    scene.instances = {{.name = "facet", .mesh = 0}};
+    scene.textures = {{.name = "bumps",
+                       .raster = {.width = 1,
+                                  .height = 1,
+                                  .channels = 3,
+                                  .data = {std::byte(200), std::byte(128), std::byte(230)}},
+                       .srgb = false}};
+    scene.materials = {{.name = "paint"}};
+    scene.materials[0].normal_map = NormalMap{.map = {.texture = 0}};
+
+    Scene baked = scene, dropped = scene, kept = scene;
+    CHECK(settle_normal_maps(baked, NormalMaps::bake).size() == 1);
+    CHECK_FALSE(baked.materials[0].normal_map.has_value());
+    CHECK(baked.meshes[0].normals[0].x > 0.5F);
+    CHECK(settle_normal_maps(dropped, NormalMaps::drop).size() == 1);
+    CHECK_FALSE(dropped.materials[0].normal_map.has_value());
+    CHECK(dropped.meshes[0].normals[0].x == 0);
+    CHECK(settle_normal_maps(kept, NormalMaps::pixel).empty());
+    CHECK(kept.materials[0].normal_map.has_value());
+    CHECK(kept.meshes[0].tangents.size() == 3);
 }
