@@ -1,7 +1,7 @@
 // Material -> POV-Ray textures.
 #pragma once
 
-#include "pov_plan.h"
+#include "pov_pigment.h"
 
 #include <string>
 #include <vector>
@@ -15,12 +15,6 @@ struct Finish {
     Color reflection = Color(0);
     float reflection_metallic = 0;
     bool fresnel = false;
-};
-
-/// The light that a pigment lets through: in its own colour, and as it is.
-struct Passing {
-    float filter = 0, transmit = 0;
-    bool none() const { return filter == 0 && transmit == 0; }
 };
 
 /// One of a stack of textures. Upper layers let a part of the lower ones through.

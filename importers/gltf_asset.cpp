@@ -42,9 +42,10 @@ const std::set<std::string> named_later = {
     "KHR_materials_dispersion",  "KHR_texture_basisu",
 };
 
-// Required, but the shapes are right without: shown with the plain material, and a loss.
+// Required, but the shapes are right without: shown with the plain material or as the nodes' own
+// properties say, and a loss.
 bool only_appearance(const std::string& extension) {
-    return extension.rfind("KHR_materials_", 0) == 0;
+    return extension.rfind("KHR_materials_", 0) == 0 || extension == "KHR_animation_pointer";
 }
 
 // "2.1" -> {2, 1}; {0, 0} when it is no version.

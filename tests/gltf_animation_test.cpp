@@ -175,6 +175,13 @@ TEST_CASE("glTF animations, name what they cannot move") {
           Loss{"box.gltf#/animations/0", "its animation of a 'glow' is ignored"});
 }
 
+TEST_CASE("glTF animations, may require KHR_animation_pointer, which is a loss") {
+    Gltf gltf = test::triangle();
+    gltf.root["extensionsUsed"] = gltf.root["extensionsRequired"] = {"KHR_animation_pointer"};
+    CHECK(read(gltf).losses ==
+          Losses{{"box.gltf#/extensionsUsed", "the extension KHR_animation_pointer is ignored"}});
+}
+
 TEST_CASE("glTF animations, must be whole") {
     const auto broken = [](const std::function<void(Animated&)>& spoil) {
         Animated animated;
