@@ -23,22 +23,17 @@ void load_buffers(Document& document, json& root, Bytes bin) {
         json& buffer = buffers[i];
         const std::string place = document.place(fmt::format("/buffers/{}", i));
         const auto length = buffer["byteLength"].get<std::size_t>();
-        Bytes bytes;
-        if (fallback[i]) {
+        // glTF 2.0, section 3.6.1: a buffer may be left for an extension to fill.
+        if (fallback[i] || (!buffer.contains("uri") && (i > 0 || bin.empty()))) {
             document.buffers.emplace_back();
             continue;
         }
+        Bytes bytes = bin;
         if (buffer.contains("uri")) {
             // A data: URI may be most of the file; it is not kept twice.
             const std::string uri = std::exchange(buffer["uri"].get_ref<std::string&>(), {});
             document.storage.push_back(fetch(uri, document.folder, place));
             bytes = document.storage.back();
-        } else if (i == 0 && !bin.empty()) {
-            bytes = bin;
-        } else {
-            // glTF 2.0, section 3.6.1: a buffer may be left for an extension to fill.
-            document.buffers.emplace_back();
-            continue;
         }
         if (bytes.size() < length)
             throw Error(

@@ -127,10 +127,33 @@ void scatter(const World& world, const Surfaces& surfaces, std::size_t slot, con
     next.push(position, surfaces.mirrored[slot].normalized(), back);
 }
 
+namespace {
+
+// Does a ray from `eye` leave the mesh through one facet more than it enters? The ray goes along
+// the inside_vector that the exporter writes: POV-Ray asks the same question.
+bool encloses(const PlacedMesh& placed, const Vec3& eye) {
+    const Vec3 start = placed.point_to_mesh(eye), ray = Vec3(0.1, 1, 0.05).normalized();
+    const Mesh& mesh = *placed.mesh;
+    bool odd = false;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        // The ray's coordinates in the facet (Moeller and Trumbore 1997).
+        const Vec3 origin(mesh.positions[a]);
+        const Vec3 u = Vec3(mesh.positions[b]) - origin, v = Vec3(mesh.positions[c]) - origin;
+        const Vec3 p = ray.cross(v), w = start - origin, q = w.cross(u);
+        const double scale = 1 / u.dot(p), s = w.dot(p) * scale, t = ray.dot(q) * scale;
+        if (s >= 0 && t >= 0 && s + t <= 1 && v.dot(q) * scale > 0) odd = !odd;
+    }
+    return odd;
+}
+
+}  // namespace
+
 Interiors interiors_at(const World& world, const Vec3& eye) {
     Interiors inside;
     if (!world.translucent) return inside;
     const Scene& scene = world.scene;
+    for (Index i = 0; i < world.first_sphere(); ++i)
+        if (!world.finish_of(i).opaque && encloses(world.facets.placed(i), eye)) inside.toggle(i);
     for (std::size_t i = 0; i < scene.spheres.size(); ++i)
         if ((eye - scene.spheres[i].center).length() < scene.spheres[i].radius)
             inside.toggle(world.first_sphere() + Index(i));

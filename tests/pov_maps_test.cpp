@@ -167,3 +167,19 @@ TEST_CASE("export, shows a sky as the tracer does") {
     options.exposure = depth == Depth::u8 ? 0 : -1.5;
     require_exact(agreement(stage.scene, options));
 }
+
+TEST_CASE("export, looks out of glass as the tracer does") {
+    NEEDS_POVRAY();
+    Stage stage;
+    Material m = shiny("glass");
+    m.color = Color(1);
+    m.opacity = 0.1F;
+    m.ior = 1.4F;
+    m.absorption = Absorption{.color = {0.5F, 0.8F, 0.9F}, .distance = 1};
+    for (int i = 0; i < 6; ++i) stage.sphere(shiny("ball"));
+    Mesh bowl = ball(stage.add(m));
+    stage.mesh(bowl);
+    stage.scene.instances[0].transform =
+        Matrix(1.5, 0, 0, 0, 0, 1.2, 0, 0, 0, 0, 1.3, 0, 0.4, 0.3, 10.8, 1);
+    require_exact(agreement(stage.scene));
+}
