@@ -1,10 +1,9 @@
 // The documents that say what is carried over say it of the program as it is.
+#include "manifest.h"
 #include "support.h"
 
 #include <algorithm>
-#include <map>
 #include <regex>
-#include <sstream>
 
 namespace {
 
@@ -17,27 +16,6 @@ std::string sources() {
                 text += test::read(entry.path());
     // Sentences may be broken over several literals.
     return std::regex_replace(text, std::regex("\"\\s*\n\\s*\""), "");
-}
-
-// The models of the asset folder that must load: [[asset]] tables of its manifest.
-std::vector<std::string> models_that_load() {
-    std::istringstream lines(test::read(test::assets() / "MANIFEST.toml"));
-    const std::regex pair("(\\w+) = \"(.*)\"");
-    std::vector<std::string> files;
-    std::map<std::string, std::string> asset;
-    const auto finish = [&] {
-        const bool model = asset["kind"] == "gltf" || asset["kind"] == "obj";
-        const bool loads = asset["expect"] == "load" || asset["expect"] == "load-with-warnings";
-        if (model && loads) files.push_back(asset["file"]);
-        asset.clear();
-    };
-    for (std::string line; std::getline(lines, line);) {
-        std::smatch match;
-        if (line == "[[asset]]") finish();
-        if (std::regex_match(line, match, pair)) asset[match[1]] = match[2];
-    }
-    finish();
-    return files;
 }
 
 std::string mapping() {
@@ -80,7 +58,7 @@ TEST_CASE("docs/fidelity-models.md, has a row with the required figures for ever
     const std::string document =
         test::read(test::fs::path(PENUMBRA_SOURCE_DIR) / "docs/fidelity-models.md");
     std::vector<double> parities;
-    for (const std::string& file : models_that_load()) {
+    for (const std::string& file : test::models_that_load()) {
         INFO(file << ": write docs/fidelity-models.md anew with scripts/fidelity");
         const std::size_t row = document.find("| " + file + " | ");
         REQUIRE(row != std::string::npos);
