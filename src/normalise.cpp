@@ -112,10 +112,9 @@ float linear_sample(const Texture& texture, std::size_t sample) {
 // Makes the sky's gain part of its image: POV-Ray 3.7 has none. Floats are rounded to the halves
 // that it reads.
 void develop_sky(Scene& scene) {
-    if (!scene.sky || scene.textures[scene.sky->texture].raster.depth != Depth::f32) {
-        if (!scene.sky || scene.sky->gain == 1) return;
-    }
+    if (!scene.sky) return;
     const Texture& source = scene.textures[scene.sky->texture];
+    if (scene.sky->gain == 1 && source.raster.depth != Depth::f32) return;
     const Raster& in = source.raster;
     Texture out = source;
     out.raster.depth = Depth::f32;

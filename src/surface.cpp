@@ -100,9 +100,8 @@ Geometry geometry_at(const World& world, const Hit& hit, const Vec3& point) {
 
 // The image at the mesh's texture coordinates `uv`.
 Vec3 image_at(const World& world, const ImageMap& map, const Vec2& uv) {
-    const auto& t = map.transform;
-    return Vec3(sample(world.samplers[map.texture], t[0] * uv.x + t[1] * uv.y + t[2],
-                       t[3] * uv.x + t[4] * uv.y + t[5]));
+    const Vec2 at = map_texcoord(map, uv);
+    return Vec3(sample(world.samplers[map.texture], at.x, at.y));
 }
 
 // The pigment but for the vertex colour.
@@ -125,6 +124,10 @@ Vec3 base_at(const World& world, const Finish& finish, const Geometry& geometry,
 bool takes_vertex_colors(const Material& material) {
     return std::holds_alternative<std::monostate>(material.pattern) ||
            std::holds_alternative<ImageMap>(material.pattern);
+}
+
+Vec3 pigment_of(const Finish& finish, const Vec3& base, const Geometry& geometry) {
+    return takes_vertex_colors(*finish.material) ? base * geometry.vertex_color : base;
 }
 
 double coverage_at(const World& world, const Coverage& coverage, const Vec2& texcoord) {
@@ -184,7 +187,7 @@ void find_surface(const World& world, const Vec3& origin, const Vec3& direction,
     surfaces.facet_normal.set(slot, g.facet_normal);
     surfaces.mirrored.set(slot, direction - g.normal * (2 * direction.dot(g.normal)));
     const Vec3 base = base_at(world, finish, g, point, hit.object >= world.first_plane());
-    const Vec3 pigment = takes_vertex_colors(*finish.material) ? base * g.vertex_color : base;
+    const Vec3 pigment = pigment_of(finish, base, g);
     surfaces.pigment.set(slot, pigment);
     surfaces.tint.set(slot, finish.textured ? base : pigment);
     surfaces.own.set(slot, (pigment * finish.ambient + finish.emission) * finish.opacity);
@@ -209,8 +212,7 @@ Vec3 light_through(const World& world, const Vec3& origin, const Vec3& direction
     const double there = facet && coverage ? coverage_at(world, *coverage, g.texcoord) : 1;
     if (finish.opacity >= 1) return Vec3(1 - there);
     const Vec3 base = base_at(world, finish, g, point, hit.object >= world.first_plane());
-    return through_at(finish, takes_vertex_colors(*finish.material) ? base * g.vertex_color : base,
-                      there);
+    return through_at(finish, pigment_of(finish, base, g), there);
 }
 
 }  // namespace penumbra
