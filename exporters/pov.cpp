@@ -176,9 +176,9 @@ struct Writer {
 
     // The material and what else stands in an object, after its transform: patterns in world space
     // must not move with it.
-    std::string surface(const Look& look) const {
+    std::string surface(const Look& look, bool with_texture = true) const {
         const Material& m = scene.scene.materials[look.material];
-        std::string text = look.tinted ? "" : " texture { Material_" + look.name + " }";
+        std::string text = with_texture ? " texture { Material_" + look.name + " }" : "";
         return text + interior(m);
     }
 
@@ -203,7 +203,8 @@ struct Writer {
         if (mesh.name.empty()) return;
         if (instance.name != scene.scene.meshes[instance.mesh].name) title(instance.name);
         const std::string where = placement(instance.transform);
-        out += "  object { Mesh_" + mesh.name + where + surface(plan.looks[mesh.look]);
+        out += "  object { Mesh_" + mesh.name + where +
+               surface(plan.looks[mesh.look], mesh.tints.empty());
         out += where.find('\n') == std::string::npos ? " }\n" : "\n  }\n";
     }
 

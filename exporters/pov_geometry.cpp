@@ -85,14 +85,15 @@ void append_texture_list(std::string& out, const Plan& plan, const MeshPlan& mes
     out += "  texture_list { " + std::to_string(mesh.tints.size());
     for (std::size_t i = 0; i < mesh.tints.size(); ++i)
         out += ",\n    texture { " +
-               (single ? single_texture(plan, look, mesh.tints[i]) : tint_name(mesh, i)) + " }";
+               (single ? single_texture(plan, look, mesh.tints[i].color) : tint_name(mesh, i)) +
+               " }";
     out += "\n  }\n";
 }
 
 void declare_tints(std::string& out, const Plan& plan, const MeshPlan& mesh, const Look& look) {
     if (is_single(plan, look)) return;
     for (std::size_t i = 0; i < mesh.tints.size(); ++i)
-        out += texture_declaration(plan, look, tint_name(mesh, i), &mesh.tints[i]);
+        out += tint_declaration(plan, look, tint_name(mesh, i), mesh.tints[i]);
 }
 
 void append_faces(std::string& out, const Mesh& mesh, const MeshPlan& plan) {
@@ -122,14 +123,14 @@ void append_mesh(std::string& out, const Plan& plan, std::size_t index) {
     const MeshPlan& mesh_plan = plan.meshes[index];
     const Look& look = plan.looks[mesh_plan.look];
     out += '\n';
-    if (look.tinted) declare_tints(out, plan, mesh_plan, look);
+    if (!mesh_plan.tints.empty()) declare_tints(out, plan, mesh_plan, look);
     out += "#declare Mesh_" + mesh_plan.name + " = mesh2 {";
     if (mesh.name != mesh_plan.name && !mesh.name.empty()) out += "  // " + sdl::comment(mesh.name);
     out += '\n';
     append_vectors(out, "vertex_vectors", mesh.positions);
     if (mesh_plan.normals) append_normals(out, mesh.normals);
     if (mesh_plan.texcoords) append_texcoords(out, mesh.texcoords);
-    if (look.tinted) append_texture_list(out, plan, mesh_plan, look);
+    if (!mesh_plan.tints.empty()) append_texture_list(out, plan, mesh_plan, look);
     append_faces(out, mesh, mesh_plan);
     out += "  inside_vector <0.1, 1, 0.05>\n}\n";
 }

@@ -254,10 +254,14 @@ std::vector<Layer> layers_of(const Plan& plan, const Look& look, std::size_t lob
     return layers;
 }
 
+namespace {
+
+// Declarations that end in that of `name`, the look's texture; `tint` is the vertex colour of a
+// tinted look.
 std::string texture_declaration(const Plan& plan, const Look& look, const std::string& name,
                                 const Color* tint) {
     const Material& m = plan.scene->materials[look.material];
-    if (!m.coverage || look.surface != Look::Surface::mesh)
+    if (!m.coverage || m.coverage->map.texture == no_index || look.surface != Look::Surface::mesh)
         return declare_lobes(plan, look, name, tint);
     const std::string there = name + "__there";
     const Coverage& coverage = *m.coverage;
@@ -266,6 +270,26 @@ std::string texture_declaration(const Plan& plan, const Look& look, const std::s
     return declare_lobes(plan, look, there, tint) + "#declare " + name + " =\n" +
            pattern_text(plan, look, coverage.map,
                         fmt::format("[{} Nothing] [{} {}]", number(from), number(to), there));
+}
+
+}  // namespace
+
+std::string tint_declaration(const Plan& plan, const Look& look, const std::string& name,
+                             const Tint& tint) {
+    const bool faded = tint.alpha != 1;
+    std::string out, whole = "Material_" + look.name;
+    if (look.tinted) {
+        whole = faded ? name + "__whole" : name;
+        out = texture_declaration(plan, look, whole, &tint.color);
+        if (!faded) return out;
+    }
+    out += "#declare " + name + " =\ntexture { ";
+    if (faded)
+        out += fmt::format("average texture_map {{ [{} {}] [{} Nothing] }}", number(tint.alpha),
+                           whole, number(1 - double(tint.alpha)));
+    else
+        out += whole;
+    return out + " }\n";
 }
 
 bool is_single(const Plan& plan, const Look& look) {

@@ -30,10 +30,9 @@ struct Layer {
 /// The layers of a look that shows gloss lobe `lobe`, lowest first.
 std::vector<Layer> layers_of(const Plan& plan, const Look& look, std::size_t lobe = 0);
 
-/// Declarations that end in that of `name`, the look's texture; `tint` is the vertex colour (times
-/// Material::color) of a tinted look.
-std::string texture_declaration(const Plan& plan, const Look& look, const std::string& name,
-                                const Color* tint);
+/// Declarations that end in that of `name`, the look's texture at vertices of that tint.
+std::string tint_declaration(const Plan& plan, const Look& look, const std::string& name,
+                             const Tint& tint);
 
 /// Can the look's texture stand in a list without a name?
 bool is_single(const Plan& plan, const Look& look);

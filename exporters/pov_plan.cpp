@@ -59,19 +59,20 @@ bool plain(const Material& material) {
     return std::holds_alternative<std::monostate>(material.pattern);
 }
 
-struct ColorBits {
-    std::array<std::uint32_t, 3> bits;
-    explicit ColorBits(const Color& c)
-        : bits{std::bit_cast<std::uint32_t>(c.x + 0.0F), std::bit_cast<std::uint32_t>(c.y + 0.0F),
-               std::bit_cast<std::uint32_t>(c.z + 0.0F)} {}
-    bool operator==(const ColorBits&) const = default;
+struct TintBits {
+    std::array<std::uint32_t, 4> bits;
+    explicit TintBits(const Tint& t)
+        : bits{bits_of(t.color.x), bits_of(t.color.y), bits_of(t.color.z), bits_of(t.alpha)} {}
+    bool operator==(const TintBits&) const = default;
+    // Equal numbers have equal bits, 0 and -0 too.
+    static std::uint32_t bits_of(float x) { return std::bit_cast<std::uint32_t>(x + 0.0F); }
 };
 
-struct ColorHash {
-    std::size_t operator()(const ColorBits& c) const {
-        std::size_t hash = c.bits[0];
-        hash = hash * 0x9E3779B97F4A7C15U + c.bits[1];
-        return hash * 0x9E3779B97F4A7C15U + c.bits[2];
+struct TintHash {
+    std::size_t operator()(const TintBits& t) const {
+        std::size_t hash = 0;
+        for (const std::uint32_t part : t.bits) hash = hash * 0x9E3779B97F4A7C15U + part;
+        return hash;
     }
 };
 
@@ -141,14 +142,15 @@ struct Planner {
         use_texture(map.texture, part);
     }
 
-    void find_tints(const Mesh& mesh, MeshPlan& out) {
+    void find_tints(const Mesh& mesh, bool colored, bool faded, MeshPlan& out) {
         const Color& base = scene.materials[mesh.material].color;
-        std::unordered_map<ColorBits, Index, ColorHash> seen;
-        out.tint_of.reserve(mesh.colors.size());
-        for (const Color& c : mesh.colors) {
-            const auto [entry, added] =
-                seen.try_emplace(ColorBits(base * c), Index(out.tints.size()));
-            if (added) out.tints.push_back(base * c);
+        std::unordered_map<TintBits, Index, TintHash> seen;
+        out.tint_of.reserve(mesh.positions.size());
+        for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+            const Tint tint = {colored ? base * mesh.colors[i] : base,
+                               faded ? std::clamp(mesh.alphas[i], 0.0F, 1.0F) : 1};
+            const auto [entry, added] = seen.try_emplace(TintBits(tint), Index(out.tints.size()));
+            if (added) out.tints.push_back(tint);
             out.tint_of.push_back(entry->second);
         }
     }
@@ -164,7 +166,8 @@ struct Planner {
         out.normals = material.smooth && !mesh.normals.empty();
         const std::vector<const ImageMap*> maps = maps_of(material, true);
         out.texcoords = !maps.empty() && !mesh.texcoords.empty();
-        if (tinted) find_tints(mesh, out);
+        const bool faded = !mesh.alphas.empty() && material.coverage && !material.coverage->cutoff;
+        if (tinted || faded) find_tints(mesh, tinted, faded, out);
         for (const ImageMap* map : maps) use_map(*map, mesh);
     }
 

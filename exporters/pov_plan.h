@@ -37,12 +37,18 @@ struct Look {
     std::string name = {};  ///< what its identifiers end in: "wood" of Material_wood
 };
 
+/// What tells the textures of vertices apart.
+struct Tint {
+    Color color = Color(1);  ///< vertex colour times Material::color
+    float alpha = 1;         ///< of Mesh::alphas
+};
+
 /// How a Scene::meshes entry is exported.
 struct MeshPlan {
     std::string name = {};                    ///< what follows "Mesh_"; empty: not drawn
     Index look = 0;                           ///< into Plan::looks
     bool texcoords = false, normals = false;  ///< are needed
-    std::vector<Color> tints = {};            ///< distinct vertex colours times Material::color
+    std::vector<Tint> tints = {};             ///< distinct ones of the vertices
     std::vector<Index> tint_of = {};          ///< per vertex, into tints
 };
 

@@ -148,11 +148,30 @@ struct BakedPolish {
     Gloss gloss = {};            ///< without transforms
 };
 
+/// An image of a material that is laid by other texture coordinates than the first one.
+struct OtherSet {
+    int texcoord = 0;  ///< n of TEXCOORD_n
+    ImageMap& (*map)(Material&) = nullptr;
+};
+
+/// A map from texture coordinates to others, as ImageMap::transform.
+using Lookup = std::array<double, 6>;
+
+/// A material whose OtherSets are looked up by the first texture coordinates.
+struct Relaid {
+    Index original = no_index, material = no_index;
+    std::vector<Lookup> lookups = {};
+};
+
 /// What the materials have come to so far.
 struct Looks {
     std::map<int, Index> materials = {};   ///< by glTF index; -1: the default one
     std::map<int, Index> untextured = {};  ///< the same without images
-    std::map<int, int> texcoords = {};     ///< n of TEXCOORD_n by glTF index; absent: no images
+    std::map<int, Index> one_set = {};     ///< the same with the images of the first TEXCOORD_n
+    std::map<Index, Index> fading = {};    ///< by material: the same with a coverage
+    std::map<int, std::vector<OtherSet>> other_sets = {};  ///< by glTF index
+    std::vector<Relaid> relaid = {};
+    std::map<int, int> texcoords = {};  ///< n of TEXCOORD_n by glTF index; absent: no images
     std::map<std::string, Index> textures = {};  ///< by image, sampling and use
     std::map<std::string, BakedPolish> polishes = {};
     ImageStore store = {};           ///< by number
@@ -204,6 +223,10 @@ TextureUse texture_use(const Reader& reader, int index);
 
 /// glTF material `index` without its images.
 Index untextured(Reader& reader, int index);
+
+/// glTF material `index` without the images that are laid by other texture coordinates than the
+/// first one.
+Index with_one_set(Reader& reader, int index);
 
 // ---- gltf_camera.cpp, gltf_lights.cpp ---------------------------------------------------------
 

@@ -201,21 +201,37 @@ void read_texcoords(const Part& part, Range range, Mesh& mesh) {
     for (Vec2f& t : mesh.texcoords) t.y = 1 - t.y;  // glTF's v runs down
 }
 
-// Alpha has a meaning only where the material is not opaque.
-void check_alpha(const Part& part, Range range, int accessor) {
+}  // namespace
+
+Index fading(Reader& reader, Index material) {
+    if (reader.scene.materials[material].coverage) return material;
+    const auto [known, fresh] = reader.looks.fading.try_emplace(material, Index(0));
+    if (fresh) {
+        known->second = Index(reader.scene.materials.size());
+        reader.scene.materials.push_back(Material(reader.scene.materials[material]));
+        reader.scene.materials.back().coverage = Coverage{};
+    }
+    return known->second;
+}
+
+namespace {
+
+// glTF 2.0, section 3.9.4: alpha has a meaning only where the material is not opaque.
+void read_alphas(const Part& part, Range range, int accessor, Mesh& mesh) {
     const int material = material_of(part.reader, part.primitive);
     if (part.accessor(accessor).type != TINYGLTF_TYPE_VEC4 || material < 0) return;
     const std::string& mode = part.model().materials[std::size_t(material)].alphaMode;
     if (mode == "OPAQUE") return;
-    std::vector<float> all(range.count * 4);
+    std::vector<float> all(range.count * 4), alphas(range.count);
     read_vertices(part, "COLOR_0", range, 4, all.data());
-    for (std::size_t i = 3; i < all.size(); i += 4) {
-        if (all[i] >= 1) continue;
-        part.reader.lose_in_primitive(
-            part.pointer + "/attributes/COLOR_0",
-            fmt::format("the vertices' alpha is ignored (alphaMode {})", mode));
-        return;
-    }
+    for (std::size_t i = 0; i < range.count; ++i)
+        alphas[i] = std::clamp(all[4 * i + 3], 0.0F, 1.0F);
+    if (std::all_of(alphas.begin(), alphas.end(), [](float a) { return a == 1; })) return;
+    if (mode == "MASK")
+        return part.reader.lose_in_primitive(part.pointer + "/attributes/COLOR_0",
+                                             "the vertices' alpha is ignored (alphaMode MASK)");
+    mesh.alphas = std::move(alphas);
+    mesh.material = fading(part.reader, mesh.material);
 }
 
 void read_colors(const Part& part, Range range, Mesh& mesh) {
@@ -231,7 +247,7 @@ void read_colors(const Part& part, Range range, Mesh& mesh) {
     if (!part.form.weights.empty() && !part.primitive.targets.empty())
         for (Color& color : mesh.colors)
             for (int c = 0; c < 3; ++c) color[c] = std::clamp(color[c], 0.0F, 1.0F);
-    check_alpha(part, range, accessor);
+    read_alphas(part, range, accessor, mesh);
 }
 
 }  // namespace

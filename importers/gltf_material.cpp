@@ -77,26 +77,32 @@ const tinygltf::Value* MaterialReader::extension(const std::string& name) const 
 }
 
 void MaterialReader::lose(const std::string& what) const {
-    if (textured) reader.lose_in_material(pointer, what);
+    // All else has been said of the same material with all its images.
+    if (textured && !one_set) reader.lose_in_material(pointer, what);
 }
 
 MaterialReader::Map MaterialReader::find(const TextureInfo& info, const std::string& name,
                                          const std::string& instead) {
     if (!textured || info.texture < 0) return {};
     if (raster_of(reader, info.texture) == nullptr) return {.state = Map::State::unreadable};
-    Map map = {.state = Map::State::constant, .texture = info.texture};
+    Map map = {.state = Map::State::constant, .texture = info.texture, .texcoord = info.texcoord};
     map.laid.transform = transform_of(info);
     const auto& t = map.laid.transform;
     if (!(std::abs(t[0] * t[4] - t[1] * t[3]) > 1e-12)) {
         lose(fmt::format("{} {}: its KHR_texture_transform has no area", name, instead));
-    } else if (texcoord.value_or(info.texcoord) != info.texcoord) {
-        lose(fmt::format("{} {}: it has other texture coordinates than the first image", name,
-                         instead));
+    } else if (one_set && texcoord.value_or(info.texcoord) != info.texcoord) {
+        reader.lose_in_material(
+            pointer, fmt::format("{} {}: it has other texture coordinates than the first image",
+                                 name, instead));
     } else {
-        texcoord = info.texcoord;
+        if (!texcoord) texcoord = info.texcoord;
         map.state = Map::State::laid;
     }
     return map;
+}
+
+void MaterialReader::note_set(const Map& map, ImageMap& (*member)(Material&)) {
+    if (map.texcoord != texcoord) other_sets.push_back({map.texcoord, member});
 }
 
 Color MaterialReader::mean_of(const tinygltf::Value& from, const std::string& key, bool srgb) {
@@ -171,6 +177,7 @@ void MaterialReader::read_emission() {
     if (map.is_laid() && opaque()) {
         map.laid.texture = read_texture(reader, map.texture, true);
         material.emission_map = map.laid;
+        note_set(map, [](Material& m) -> ImageMap& { return *m.emission_map; });
         return;
     }
     if (map.is_laid()) lose("emissiveTexture is replaced by its mean: the surface is transparent");
@@ -187,6 +194,7 @@ void MaterialReader::read_normal() {
     if (!map.is_laid() || given.scale == 0) return;
     map.laid.texture = read_texture(reader, map.texture, false);
     material.normal_map = NormalMap{.map = map.laid, .scale = float(given.scale)};
+    note_set(map, [](Material& m) -> ImageMap& { return m.normal_map->map; });
 }
 
 // glTF 2.0, section 3.9.3: occlusion dims indirect light, and the only one that there is here,
@@ -227,18 +235,22 @@ void MaterialReader::read() {
 
 namespace {
 
-Index add_material(Reader& reader, int index, bool textured) {
+enum class Images { all, first_set, none };
+
+Index add_material(Reader& reader, int index, Images images) {
     const tinygltf::Material& source = source_of(reader, index);
     MaterialReader read = {.reader = reader,
                            .source = source,
                            .pointer = fmt::format("/materials/{}", index),
-                           .textured = textured};
+                           .textured = images != Images::none,
+                           .one_set = images == Images::first_set};
     read.material.name = index < 0             ? "default"
                          : source.name.empty() ? fmt::format("material{}", index)
                                                : source.name;
     read.material.ambient = Color(0.1F);
     read.read();
-    if (textured && read.texcoord) reader.looks.texcoords[index] = *read.texcoord;
+    if (images == Images::all && read.texcoord) reader.looks.texcoords[index] = *read.texcoord;
+    if (!read.other_sets.empty()) reader.looks.other_sets[index] = std::move(read.other_sets);
     reader.scene.materials.push_back(std::move(read.material));
     return Index(reader.scene.materials.size() - 1);
 }
@@ -251,16 +263,25 @@ TextureUse texture_use(const Reader& reader, int index) {
     return {.used = true, .texcoord = found->second};
 }
 
+namespace {
+
+Index read_once(Reader& reader, int index, Images images, std::map<int, Index>& known) {
+    if (const auto found = known.find(index); found != known.end()) return found->second;
+    return known[index] = add_material(reader, index, images);
+}
+
+}  // namespace
+
 Index read_material(Reader& reader, int index) {
-    const auto known = reader.looks.materials.find(index);
-    if (known != reader.looks.materials.end()) return known->second;
-    return reader.looks.materials[index] = add_material(reader, index, true);
+    return read_once(reader, index, Images::all, reader.looks.materials);
 }
 
 Index untextured(Reader& reader, int index) {
-    const auto known = reader.looks.untextured.find(index);
-    if (known != reader.looks.untextured.end()) return known->second;
-    return reader.looks.untextured[index] = add_material(reader, index, false);
+    return read_once(reader, index, Images::none, reader.looks.untextured);
+}
+
+Index with_one_set(Reader& reader, int index) {
+    return read_once(reader, index, Images::first_set, reader.looks.one_set);
 }
 
 }  // namespace penumbra::gltf

@@ -13,6 +13,7 @@ struct MaterialReader {
         enum class State { absent, unreadable, constant, laid };
         State state = State::absent;
         int texture = -1;
+        int texcoord = 0;
         ImageMap laid = {};  ///< without its texture
 
         bool is_laid() const { return state == State::laid; }
@@ -22,8 +23,11 @@ struct MaterialReader {
     const tinygltf::Material& source;
     std::string pointer;
     bool textured = true;  ///< else without images, and nothing is said
+    bool one_set = false;  ///< only images with the texture coordinates of the first one; only
+                           ///< what that loses is said
     Material material = {};
-    std::optional<int> texcoord = {};  ///< of the images so far
+    std::optional<int> texcoord = {};       ///< of the first image
+    std::vector<OtherSet> other_sets = {};  ///< of images that have others
     Map base = {};
     double alpha = 1;
     double transmitted = 0;  ///< of the light that the surface does not reflect
@@ -59,6 +63,8 @@ struct MaterialReader {
     void lose(const std::string& what) const;
     /// What `info` refers to; where it cannot be laid `instead` says what happens ("is ignored").
     Map find(const TextureInfo& info, const std::string& name, const std::string& instead);
+    /// Remembers the texture coordinates of an image that `member` returns.
+    void note_set(const Map& map, ImageMap& (*member)(Material&));
     /// The mean of what `key` of an extension refers to, with a loss if that matters.
     Color mean_of(const tinygltf::Value& from, const std::string& key, bool srgb);
 };

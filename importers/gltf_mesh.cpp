@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <optional>
 #include <utility>
 
 namespace penumbra::gltf {
@@ -100,21 +99,21 @@ Range used_vertices(const Part& part, Triangles& triangles) {
     return {.first = low, .count = std::size_t(high - low) + 1};
 }
 
-// None where the primitive has nothing to show.
-std::optional<ShownMesh> read_primitive(const Part& part, const std::vector<Matrix>& joints,
-                                        const std::string& name) {
+// Adds to `shown` what the primitive has to show.
+void read_primitive(const Part& part, const std::vector<Matrix>& joints, const std::string& name,
+                    std::vector<ShownMesh>& shown) {
     if (attribute(part, "POSITION", {TINYGLTF_TYPE_VEC3}) < 0) {
         part.lose("it has no POSITION and is left out");
-        return std::nullopt;
+        return;
     }
-    if (!is_surface(part)) return std::nullopt;
+    if (!is_surface(part)) return;
 
     Mesh mesh;
     mesh.name = name;
     mesh.triangles = read_triangles(part);
     if (mesh.triangles.empty()) {
         part.lose("it has no whole triangle and is left out");
-        return std::nullopt;
+        return;
     }
     const Range range = used_vertices(part, mesh.triangles);
     mesh.material = read_material(part.reader, material_of(part.reader, part.primitive));
@@ -124,8 +123,11 @@ std::optional<ShownMesh> read_primitive(const Part& part, const std::vector<Matr
         part.lose(fmt::format("it has no joints and weights for skin {}; it stands where its node "
                               "does",
                               part.form.skin));
-    part.reader.scene.meshes.push_back(std::move(mesh));
-    return ShownMesh{.mesh = Index(part.reader.scene.meshes.size() - 1), .posed = posed};
+    std::vector<Mesh>& meshes = part.reader.scene.meshes;
+    for (Mesh& laid : lay_by_one_set(part, range, std::move(mesh))) {
+        shown.push_back({.mesh = Index(meshes.size()), .posed = posed});
+        meshes.push_back(std::move(laid));
+    }
 }
 
 }  // namespace
@@ -139,7 +141,7 @@ const std::vector<ShownMesh>& read_mesh(Reader& reader, const Form& form) {
     for (std::size_t i = 0; i < source.primitives.size(); ++i) {
         const Part part = {reader, source.primitives[i], form,
                            fmt::format("/meshes/{}/primitives/{}", form.mesh, i)};
-        if (const auto shown = read_primitive(part, joints, name)) place->second.push_back(*shown);
+        read_primitive(part, joints, name, place->second);
     }
     return place->second;
 }

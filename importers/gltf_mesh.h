@@ -44,6 +44,17 @@ void read_vertices(const Part& part, const std::string& name, Range range, int w
 /// tangents, texture coordinates and colours, in the mesh's own space. Throws Error (input).
 void read_attributes(const Part& part, Range range, Mesh& mesh);
 
+/// The material, with a coverage for the alpha of vertices.
+Index fading(Reader& reader, Index material);
+
+// ---- gltf_texcoord.cpp ------------------------------------------------------------------------
+
+/// The meshes that `mesh` becomes where its material has OtherSets: one for every way in which
+/// these follow from its texture coordinates, each with a material of its own, so that one set of
+/// texture coordinates is enough. Where there are too many of them those images are given up, and
+/// that is said. Throws Error (input).
+std::vector<Mesh> lay_by_one_set(const Part& part, Range range, Mesh mesh);
+
 // ---- gltf_skin.cpp ----------------------------------------------------------------------------
 
 /// Moves the mesh's vertices to where its skin's joints take them, in the world; false when the

@@ -142,8 +142,8 @@ void Plan::align() {
     for (Input& input : inputs) {
         if (!input.map.is_laid()) continue;
         const Texture own = frame_of(read.reader, input.map.texture);
-        if (input.map.laid != first->laid || own.wrap_u != sampling.wrap_u ||
-            own.wrap_v != sampling.wrap_v)
+        if (input.map.texcoord != first->texcoord || input.map.laid != first->laid ||
+            own.wrap_u != sampling.wrap_u || own.wrap_v != sampling.wrap_v)
             flatten(input, "it is laid in another way than the base colour's");
     }
 }
@@ -210,6 +210,8 @@ void Plan::bake() {
     scattered.texture = polish.scattered;
     const Color f0 = maps.specular.factor;
     lay_polish(read.material, std::move(gloss), scattered, largest(f0));
+    if (read.material.gloss && read.material.gloss->level.texture != no_index)
+        read.note_set(level, [](Material& m) -> ImageMap& { return m.gloss->level; });
     if (scattered.texture == no_index) {
         read.lay_base();
         if (!is_grey(f0)) read.lose(white_highlight);

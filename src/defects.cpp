@@ -70,7 +70,8 @@ struct Examiner {
 
     void maps(const Material& m, const std::string& who) {
         if (m.emission_map) map(*m.emission_map, who, "emission");
-        if (m.coverage) map(m.coverage->map, who, "coverage");
+        if (m.coverage && m.coverage->map.texture != no_index)
+            map(m.coverage->map, who, "coverage");
         if (m.normal_map) map(m.normal_map->map, who, "normal map");
         if (m.gloss) {
             require(!m.gloss->lobes.empty() && m.gloss->lobes.size() <= 16,
@@ -90,7 +91,8 @@ struct Examiner {
         const std::string who = fmt::format("mesh '{}'", m.name);
         const std::size_t count = m.positions.size();
         const auto fits = [&](const auto& v) { return v.empty() || v.size() == count; };
-        require(fits(m.normals) && fits(m.texcoords) && fits(m.colors) && fits(m.tangents),
+        require(fits(m.normals) && fits(m.texcoords) && fits(m.colors) && fits(m.alphas) &&
+                    fits(m.tangents),
                 who + " has per-vertex data of unequal lengths");
         require(std::all_of(m.positions.begin(), m.positions.end(), finite_vector<Vec3f>),
                 who + " has a position that is not finite");

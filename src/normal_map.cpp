@@ -83,6 +83,7 @@ void give_facet_normals(Mesh& mesh) {
     pick(mesh.positions, chosen);
     pick(mesh.texcoords, chosen);
     pick(mesh.colors, chosen);
+    pick(mesh.alphas, chosen);
     mesh.tangents.clear();
     mesh.normals = std::move(normals);
 }

@@ -94,6 +94,7 @@ Index Subdivision::midpoint(Index a, Index b) {
     append_mean(mesh_.normals, a, b);
     append_mean(mesh_.texcoords, a, b);
     append_mean(mesh_.colors, a, b);
+    append_mean(mesh_.alphas, a, b);
     if (!mesh_.tangents.empty()) {
         const Tangent &s = mesh_.tangents[a], &t = mesh_.tangents[b];
         mesh_.tangents.push_back(

@@ -28,6 +28,7 @@ struct Geometry {
     Vec3 normal = {}, facet_normal = {};
     Vec2 texcoord = {};
     Vec3 vertex_color = Vec3(1);
+    double vertex_alpha = 1;
 };
 
 // Normals that are all but equal make a flat facet: POV-Ray then ignores them
@@ -55,6 +56,7 @@ Geometry on_facet(const World& world, const Hit& hit, const Vec3& point) {
         return Vec3(values[a]) * weights.x + Vec3(values[b]) * weights.y +
                Vec3(values[c]) * weights.z;
     };
+    const Material& material = world.scene.materials[mesh.material];
     Geometry g;
     const Vec3 flat = facet_plane(mesh, hit.facet).normal;
     g.facet_normal = placed.normal_to_world(flat).normalized();
@@ -62,7 +64,7 @@ Geometry on_facet(const World& world, const Hit& hit, const Vec3& point) {
     if (placed.smooth && !(nearly_equal(mesh.normals[a], mesh.normals[b]) &&
                            nearly_equal(mesh.normals[a], mesh.normals[c])))
         g.normal = placed.normal_to_world(interpolate(mesh.normals)).normalized();
-    const auto& map = world.scene.materials[mesh.material].normal_map;
+    const auto& map = material.normal_map;
     if (map && has_tangent_frames(mesh))
         g.normal = placed
                        .normal_to_world(perturbed_normal(*map, world.samplers[map->map.texture],
@@ -71,7 +73,15 @@ Geometry on_facet(const World& world, const Hit& hit, const Vec3& point) {
     if (!mesh.texcoords.empty())
         g.texcoord = Vec2(mesh.texcoords[a]) * weights.x + Vec2(mesh.texcoords[b]) * weights.y +
                      Vec2(mesh.texcoords[c]) * weights.z;
-    if (!mesh.colors.empty()) g.vertex_color = interpolate(mesh.colors);
+    Vec3 shares = weights;
+    if (!mesh.alphas.empty() && material.coverage && !material.coverage->cutoff) {
+        shares *= Vec3(mesh.alphas[a], mesh.alphas[b], mesh.alphas[c]);
+        g.vertex_alpha = shares.x + shares.y + shares.z;
+        if (g.vertex_alpha > 0) shares /= g.vertex_alpha;
+    }
+    if (!mesh.colors.empty())
+        g.vertex_color = Vec3(mesh.colors[a]) * shares.x + Vec3(mesh.colors[b]) * shares.y +
+                         Vec3(mesh.colors[c]) * shares.z;
     return g;
 }
 
@@ -130,9 +140,10 @@ Vec3 pigment_of(const Finish& finish, const Vec3& base, const Geometry& geometry
     return takes_vertex_colors(*finish.material) ? base * geometry.vertex_color : base;
 }
 
-double coverage_at(const World& world, const Coverage& coverage, const Vec2& texcoord) {
-    const double there = image_at(world, coverage.map, texcoord).x;
-    if (!coverage.cutoff) return there;
+double coverage_at(const World& world, const Coverage& coverage, const Geometry& geometry) {
+    const double there =
+        coverage.map.texture == no_index ? 1 : image_at(world, coverage.map, geometry.texcoord).x;
+    if (!coverage.cutoff) return there * geometry.vertex_alpha;
     return there >= cutoff_threshold(*coverage.cutoff) ? 1 : 0;
 }
 
@@ -156,7 +167,7 @@ void apply_maps(const World& world, const Geometry& g, const Finish& finish, Sur
     const Material& material = *finish.material;
     double coverage = 1;
     Vec3 emission = finish.emission;
-    if (material.coverage) coverage = coverage_at(world, *material.coverage, g.texcoord);
+    if (material.coverage) coverage = coverage_at(world, *material.coverage, g);
     if (material.emission_map) emission *= image_at(world, *material.emission_map, g.texcoord);
     if (material.gloss) {
         surfaces.lobes[slot] = lobes_at(world, *material.gloss, g.texcoord);
@@ -209,7 +220,7 @@ Vec3 light_through(const World& world, const Vec3& origin, const Vec3& direction
     const Finish& finish = world.finish_of(hit.object);
     const bool facet = hit.object < world.first_sphere();
     const std::optional<Coverage>& coverage = finish.material->coverage;
-    const double there = facet && coverage ? coverage_at(world, *coverage, g.texcoord) : 1;
+    const double there = facet && coverage ? coverage_at(world, *coverage, g) : 1;
     if (finish.opacity >= 1) return Vec3(1 - there);
     const Vec3 base = base_at(world, finish, g, point, hit.object >= world.first_plane());
     return through_at(finish, pigment_of(finish, base, g), there);

@@ -110,6 +110,7 @@ void compute_tangents(Mesh& mesh, const ImageMap& map) {
             repeat(mesh.normals, vertex);
             repeat(mesh.texcoords, vertex);
             repeat(mesh.colors, vertex);
+            repeat(mesh.alphas, vertex);
             repeat(mesh.tangents, vertex);
         }
         mesh.tangents[twin] =

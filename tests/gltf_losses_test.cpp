@@ -19,7 +19,7 @@ test::Gltf demanding() {
     primitive["attributes"]["_TEMPERATURE"] = color;
     primitive["material"] =
         gltf.add("materials", {{"name", "velvet"},
-                               {"alphaMode", "BLEND"},
+                               {"alphaMode", "MASK"},
                                {"extensions",
                                 {{"KHR_materials_sheen", {{"sheenColorFactor", {1, 1, 1}}}},
                                  {"KHR_materials_anisotropy", {{"anisotropyStrength", 1}}},

@@ -139,8 +139,9 @@ TEST_CASE("glTF textures, are replaced by their mean where they cannot be laid")
                                          "texture coordinates than the first image"},
                                  {place, "normalTexture is ignored: it has other texture "
                                          "coordinates than the first image"}});
-    CHECK(apart.scene.materials[0].emission.x == Approx(0.5));
-    CHECK_FALSE(apart.scene.materials[0].normal_map);
+    const Material& alone = apart.scene.materials.at(apart.scene.meshes.at(0).material);
+    CHECK(alone.emission.x == Approx(0.5));
+    CHECK_FALSE(alone.normal_map);
 
     gltf.root["materials"][0] = textured;
     gltf.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] = {
@@ -150,6 +151,68 @@ TEST_CASE("glTF textures, are replaced by their mean where they cannot be laid")
                                         "KHR_texture_transform has no area"}});
     CHECK(flat.scene.materials[0].color.x == Approx(0.5));
     CHECK(texture_of(flat.scene.materials[0]) == no_index);
+}
+
+namespace {
+
+// Two facets that share an edge; emission has texture coordinates of its own.
+Imported with_two_sets(const std::vector<float>& first, const std::vector<float>& second) {
+    Gltf gltf = with_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
+                               {"emissiveFactor", {1, 1, 1}},
+                               {"emissiveTexture", {{"index", 0}, {"texCoord", 1}}}});
+    gltf.add("images", picture({1, 0, 0}));
+    gltf.add("textures", {{"source", 0}});
+    json& primitive = gltf.root["meshes"][0]["primitives"][0];
+    primitive["mode"] = 5;  // a strip
+    primitive["attributes"] = {
+        {"POSITION", gltf.accessor("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0})},
+        {"TEXCOORD_0", gltf.accessor("VEC2", first)},
+        {"TEXCOORD_1", gltf.accessor("VEC2", second)}};
+    return read(gltf);
+}
+
+// Where the emission of a corner is looked up, as glTF counts.
+Vec2 emission_at(const Scene& scene, const Mesh& mesh, std::size_t facet, std::size_t corner) {
+    const auto& t = scene.materials.at(mesh.material).emission_map.value().transform;
+    const Vec2 uv(mesh.texcoords.at(mesh.triangles.at(facet).at(corner)));
+    return {t[0] * uv.x + t[1] * uv.y + t[2], 1 - (t[3] * uv.x + t[4] * uv.y + t[5])};
+}
+
+}  // namespace
+
+TEST_CASE("glTF textures, on a second set of coordinates are laid by the first") {
+    const std::vector<float> square = {0, 0, 1, 0, 0, 1, 1, 1};
+    // Turned and shrunk as a whole: one material is enough.
+    const Imported turned = with_two_sets(square, {0.5F, 0, 0.5F, 0.25F, 0, 0, 0, 0.25F});
+    CHECK(turned.losses.empty());
+    REQUIRE(turned.scene.meshes.size() == 1);
+    const Mesh& whole = turned.scene.meshes[0];
+    CHECK((emission_at(turned.scene, whole, 0, 1) - Vec2(0.5, 0.25)).length() < 1e-6);
+    CHECK((emission_at(turned.scene, whole, 1, 1) - Vec2(0, 0.25)).length() < 1e-6);
+
+    // Folded along the common edge: each facet has a material of its own.
+    const Imported folded = with_two_sets(square, {0, 0, 1, 0, 0, 1, 0.5F, 0.25F});
+    CHECK(folded.losses.empty());
+    REQUIRE(folded.scene.meshes.size() == 2);
+    CHECK(folded.scene.instances.size() == 2);
+    CHECK(folded.scene.meshes[0].material != folded.scene.meshes[1].material);
+    CHECK(folded.scene.meshes[1].positions.size() == 3);
+    CHECK((emission_at(folded.scene, folded.scene.meshes[0], 0, 2) - Vec2(0, 1)).length() < 1e-6);
+    std::size_t last = 0;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+        const Mesh& mesh = folded.scene.meshes[1];
+        if (mesh.positions[mesh.triangles[0][corner]] == Vec3f(1, 1, 0)) last = corner;
+    }
+    CHECK((emission_at(folded.scene, folded.scene.meshes[1], 0, last) - Vec2(0.5, 0.25)).length() <
+          1e-6);
+}
+
+TEST_CASE("glTF textures, on a second set that does not follow from the first take their mean") {
+    const Imported apart = with_two_sets({0, 0, 0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 1, 1, 1});
+    CHECK(apart.losses == Losses{{"box.gltf#/materials/0",
+                                  "emissiveTexture is replaced by its mean: it has other texture "
+                                  "coordinates than the first image"}});
+    CHECK(apart.scene.meshes.size() == 1);
 }
 
 TEST_CASE("glTF textures, of the first image decide about the coordinates") {

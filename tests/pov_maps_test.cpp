@@ -78,6 +78,32 @@ TEST_CASE("export, shows surfaces with gaps as the tracer does") {
     require_exact(agreement(stage.scene));
 }
 
+TEST_CASE("export, fades by the alpha of vertices as the tracer does") {
+    NEEDS_POVRAY();
+    Stage stage;
+    const auto faded = [](Mesh mesh) {
+        for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+            mesh.alphas.push_back(0.25F * float((i / 3) % 5));
+        return mesh;
+    };
+    Material plain = shiny("veil");
+    plain.coverage = Coverage{};
+    stage.mesh(faded(ball(stage.add(plain))));
+    stage.mesh(faded(ball(stage.add(plain), true)));
+    stage.mesh(ball(stage.add(plain)));
+    Material m = textured(stage, "leaf");
+    m.reflection = Color(0.3F);
+    m.coverage = Coverage{.map = askew(stage.add(grey("holes")))};
+    stage.mesh(faded(ball(stage.add(m))));
+    stage.mesh(faded(ball(stage.add(m), true)));
+    m.coverage->cutoff = 0.5F;  // which takes no notice of vertices
+    stage.mesh(faded(ball(stage.add(m))));
+    plain.opacity = 0.4F;
+    stage.mesh(faded(ball(stage.add(plain), true)));
+    stage.scene.lights[1].position = {-9, 2.5, 1};
+    require_exact(agreement(stage.scene));
+}
+
 TEST_CASE("export, shows highlights and mirrors that images vary as the tracer does") {
     NEEDS_POVRAY();
     Stage stage;

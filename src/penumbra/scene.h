@@ -74,9 +74,11 @@ using Pattern = std::variant<std::monostate, ImageMap, Checker, Noise>;
 
 /// An image whose first channel says how much of a mesh is there: with c in [0, 1] the surface is
 /// mixed from its own look (c) and from nothing at all (1 - c), highlights and mirror included.
-/// With a cutoff it is there where c >= cutoff, and nowhere else. The texture is linear.
+/// With a cutoff it is there where c >= cutoff, and nowhere else. The texture is linear. Without a
+/// cutoff c is multiplied by Mesh::alphas, and vertex colours are interpolated with these as weights
+/// (premultiplied), as POV-Ray mixes the textures of vertices.
 struct Coverage {
-    ImageMap map = {};
+    ImageMap map = {};  ///< no texture: 1 everywhere
     std::optional<float> cutoff = {};
 };
 
@@ -150,6 +152,7 @@ struct Mesh {
     std::vector<Vec3f> normals = {};  ///< unit; empty: flat facets
     std::vector<Vec2f> texcoords = {};
     std::vector<Color> colors = {};                    ///< vertex colours, times Material::color
+    std::vector<float> alphas = {};                    ///< [0, 1], of Material::coverage
     std::vector<Tangent> tangents = {};                ///< needed by normal maps
     std::vector<std::array<Index, 3>> triangles = {};  ///< into positions
     Index material = no_index;                         ///< into Scene::materials
