@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <tuple>
 
 namespace penumbra {
 
@@ -80,21 +82,38 @@ struct Replacement {
     Reference material = {};
 };
 
-// Reads every file once for each material that it gets, and places it as often as it is named.
+// The length of an Absorption has no place in a transform. Returns whether there is one.
+bool scale_absorption(Scene& scene, double scale) {
+    bool absorbs = false;
+    for (Material& material : scene.materials)
+        if (material.absorption) {
+            material.absorption->distance *= scale;
+            absorbs = true;
+        }
+    return absorbs;
+}
+
+// Reads every file once for each material that it gets, and places it as often as it is named; one
+// that absorbs light also for each scale.
 std::vector<Replacement> load_models(const std::vector<Placement>& placements,
                                      const ModelOptions& options, Imported& result) {
-    std::map<std::pair<fs::path, std::string>, Model> known;
+    std::map<std::tuple<fs::path, std::string, double>, Model> known;
+    std::set<fs::path> absorbing;
     std::vector<Replacement> replacements;
     for (const Placement& placement : placements) {
         if (placement.named_by && !is_there(placement.file))
             throw Error(placement.named_by->failure, placement.named_by->place,
                         "no such file: " + printable(placement.file.string()));
-        const auto key = std::pair(placement.file.lexically_normal(),
-                                   placement.material ? placement.material->name : "");
-        auto found = known.find(key);
+        const fs::path file = placement.file.lexically_normal();
+        const std::string material = placement.material ? placement.material->name : "";
+        const double scale = mean_scale(placement.transform());
+        auto found = known.find({file, material, absorbing.contains(file) ? scale : 1});
         if (found == known.end()) {
-            found =
-                known.emplace(key, add_model(result, read_model(placement.file, options))).first;
+            Imported model = read_model(placement.file, options);
+            const bool absorbs = scale_absorption(model.scene, scale);
+            if (absorbs) absorbing.insert(file);
+            const std::tuple key(file, material, absorbs ? scale : 1);
+            found = known.emplace(key, add_model(result, std::move(model))).first;
             if (placement.material)
                 replacements.push_back(
                     {found->second.mesh, found->second.meshes, *placement.material});

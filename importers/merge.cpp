@@ -36,7 +36,7 @@ Vec3 turned(const Vec3& direction, const Matrix& transform) {
 // Lengths that have no direction scale by the mean of the transform's scales.
 void transform_all(Scene& part, const Matrix& transform) {
     if (transform == Matrix()) return;
-    const double scale = std::cbrt(std::abs(transform.determinant()));
+    const double scale = mean_scale(transform);
     for (Instance& instance : part.instances) instance.transform *= transform;
     for (Light& light : part.lights) {
         light.position = light.position * transform;
@@ -54,6 +54,8 @@ void transform_all(Scene& part, const Matrix& transform) {
 }
 
 }  // namespace
+
+double mean_scale(const Matrix& transform) { return std::cbrt(std::abs(transform.determinant())); }
 
 Model add_model(Imported& whole, Imported&& part) {
     Scene& to = whole.scene;

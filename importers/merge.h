@@ -12,6 +12,9 @@ struct Model {
                         ///< indices of the whole scene; the rest is moved out
 };
 
+/// The factor by which `transform` changes lengths, in the mean over all directions.
+double mean_scale(const Matrix& transform);
+
 /// Appends the materials, textures, meshes, losses and infos of a model (that has no spheres or
 /// planes). Instances, lights and cameras follow with place_model().
 Model add_model(Imported& whole, Imported&& part);

@@ -1,4 +1,5 @@
 // Several inputs and sidecars become one scene.
+#include "gltf_looks.h"
 #include "inputs.h"
 
 using namespace penumbra;
@@ -138,6 +139,32 @@ TEST_CASE("A model is placed by a column-major matrix") {
     CHECK(points[0] == Vec3(5, 6, 7));
     CHECK(points[1] == Vec3(5, 6, 6));
     CHECK(points[2] == Vec3(6, 6, 7));
+}
+
+TEST_CASE("A model's absorption has its scale") {
+    const test::json volume = {
+        {"thicknessFactor", 1}, {"attenuationDistance", 0.5}, {"attenuationColor", {1, 0.5, 0.25}}};
+    Inputs inputs;
+    inputs.file("glass.gltf",
+                test::with_material(
+                    {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}},
+                     {"extensions",
+                      {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                       {"KHR_materials_volume", volume}}}})
+                    .text());
+    inputs.file("a.toml", "[[model]]\nfile = \"glass.gltf\"\nscale = 2\n"
+                          "[[model]]\nfile = \"glass.gltf\"\n"
+                          "[[model]]\nfile = \"glass.gltf\"\nscale = 2\n");
+    const Scene scene = inputs.load({"a.toml"}).scene;
+    REQUIRE(scene.instances.size() == 3);
+    const auto distance = [&](std::size_t instance) {
+        const Mesh& mesh = scene.meshes.at(scene.instances[instance].mesh);
+        return scene.materials.at(mesh.material).absorption.value().distance;
+    };
+    CHECK(distance(0) == Approx(1));
+    CHECK(distance(1) == Approx(0.5));
+    CHECK(distance(2) == Approx(1));
+    CHECK(scene.meshes.size() == 2);
 }
 
 TEST_CASE("A model setting places an input, and a model of a sidecar") {
