@@ -1,12 +1,8 @@
-// Every scene of scenes/ and a set of well-known models through POV-Ray itself. The figures are the
-// tables of docs/fidelity.md; this program writes them when PENUMBRA_WRITE_FIDELITY names a file.
-#include "parity.h"
-#include "support.h"
-
-#include <fmt/format.h>
+// Every scene of scenes/ and a set of well-known models through POV-Ray itself. The figures are
+// tables of docs/fidelity.md.
+#include "fidelity_tables.h"
 
 #include <algorithm>
-#include <map>
 
 using namespace penumbra;
 
@@ -54,18 +50,20 @@ const std::vector<std::string> models = {
     "gltf/LightsPunctualLamp/LightsPunctualLamp.gltf",
 };
 
-std::string table_row(const Row& row) {
-    const test::Parity& m = row.measured;
-    return fmt::format("| {} | {:.6f} | {:.6f} | {:.2g} | {:.5f} | {:.5f} | {} |\n", row.name,
-                       m.parity, m.exactness, m.max_error, m.ssim, m.flip, m.losses.size());
-}
-
-std::string table(const std::vector<Row>& rows) {
-    std::string text =
-        "| scene | parity | exactness | largest difference | SSIM | FLIP | losses |\n"
-        "|---|---|---|---|---|---|---|\n";
-    for (const Row& row : rows) text += table_row(row);
-    return text;
+test::Table table(const std::string& name, const std::vector<Row>& rows) {
+    test::Table table = {.name = name,
+                         .columns = {"scene", "parity", "exactness", "largest difference", "SSIM",
+                                     "FLIP", "losses"}};
+    for (const Row& row : rows) {
+        const test::Parity& m = row.measured;
+        test::Cells cells = test::figures(m);
+        cells.insert(cells.begin(), row.name);
+        cells.push_back(fmt::format("{:.5f}", m.ssim));
+        cells.push_back(fmt::format("{:.5f}", m.flip));
+        cells.push_back(std::to_string(m.losses.size()));
+        table.rows.push_back(cells);
+    }
+    return table;
 }
 
 Row measure(const std::string& name, const std::filesystem::path& file, double parity_limit,
@@ -83,28 +81,6 @@ void check(const Row& row) {
     CHECK(m.exactness >= row.exactness_limit);
 }
 
-// The documented table must have these very rows, and figures that are no better than measured.
-void check_documented(const std::string& document, const std::vector<Row>& rows) {
-    for (const Row& row : rows) {
-        const std::size_t at = document.find("| " + row.name + " | ");
-        INFO("docs/fidelity.md is stale at " << row.name
-                                             << ": write it anew (see CONTRIBUTING.md)");
-        REQUIRE(at != std::string::npos);
-        const double documented = std::stod(document.substr(at + row.name.size() + 5));
-        CHECK(documented == Approx(row.measured.parity).margin(2e-4));
-    }
-}
-
-void write_document(const std::string& heading, const std::vector<Row>& rows) {
-    const char* file = std::getenv("PENUMBRA_WRITE_FIDELITY");
-    if (file == nullptr) return;
-    std::ofstream(file, std::ios::app) << heading << "\n\n" << table(rows) << '\n';
-}
-
-std::string document() {
-    return test::read(std::filesystem::path(PENUMBRA_SOURCE_DIR) / "docs/fidelity.md");
-}
-
 }  // namespace
 
 TEST_CASE("fidelity, our own scenes are the same picture in POV-Ray") {
@@ -116,8 +92,7 @@ TEST_CASE("fidelity, our own scenes are the same picture in POV-Ray") {
         check(rows.back());
         CHECK(rows.back().measured.losses.empty());
     }
-    write_document("## Our scenes", rows);
-    check_documented(document(), rows);
+    test::document(table("scenes", rows));
 }
 
 TEST_CASE("fidelity, well-known models are the same picture in POV-Ray") {
@@ -129,6 +104,5 @@ TEST_CASE("fidelity, well-known models are the same picture in POV-Ray") {
         rows.push_back(measure(file.filename().string(), file, 0.999, 0.99));
         check(rows.back());
     }
-    write_document("## Models by others", rows);
-    check_documented(document(), rows);
+    test::document(table("models", rows));
 }

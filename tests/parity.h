@@ -17,6 +17,7 @@ struct Parity {
     PixelPair worst = {};
     Verdict verdict = Verdict::error;
     Losses losses = {};
+    Image ours = {}, theirs = {};
 };
 
 /// Is there a POV-Ray to compare with?
@@ -31,10 +32,10 @@ inline bool have_povray() {
 /// `folder` takes the exported files.
 inline Parity parity_of(const NormalisedScene& scene, const RenderOptions& options,
                         const std::filesystem::path& folder) {
-    const Image ours = render(scene, options);
+    Image ours = render(scene, options);
     const Exported exported = write_pov(scene, options, folder / "scene.pov");
-    const PovrayRun theirs =
-        run_povray(folder / "scene.ini", options.width, options.height, {.threads = 0});
+    PovrayRun theirs = run_povray(folder / "scene.ini", options.width, options.height,
+                                  {.threads = options.threads});
     const Comparison c = compare(ours, theirs.image, {.background = scene.scene.background});
     return {.parity = c.value("parity"),
             .exactness = c.value("exactness"),
@@ -44,7 +45,17 @@ inline Parity parity_of(const NormalisedScene& scene, const RenderOptions& optio
             .flip_tile = c.value("flip_tile"),
             .worst = c.worst,
             .verdict = c.verdict,
-            .losses = exported.losses};
+            .losses = exported.losses,
+            .ours = std::move(ours),
+            .theirs = std::move(theirs.image)};
+}
+
+/// Meters the light where nobody says how to expose it, as the program does.
+inline void meter(Imported& imported) {
+    if (!imported.auto_exposure) return;
+    imported.render.exposure = 0;
+    imported.render.exposure =
+        metered_exposure(normalise(imported.scene, imported.render), imported.render);
 }
 
 /// The same for files, at the size width x height.
@@ -52,6 +63,7 @@ inline Parity parity_of(const std::filesystem::path& input, int width, int heigh
                         const std::filesystem::path& folder) {
     Imported imported = load_scene({input}, {.settings = {"render.size=[" + std::to_string(width) +
                                                           "," + std::to_string(height) + "]"}});
+    meter(imported);
     const NormalisedScene scene = normalise(std::move(imported.scene), imported.render);
     Parity result = parity_of(scene, imported.render, folder);
     result.losses.insert(result.losses.begin(), imported.losses.begin(), imported.losses.end());
