@@ -270,8 +270,8 @@ void Facets::closest_packets(const Rays& rays, Hits& hits, bool coherent) const 
             packet.ray.dir_y[lane] = float(direction.y);
             packet.ray.dir_z[lane] = float(direction.z);
             packet.ray.tnear[lane] = moved > 0 ? 0 : float(least_distance / 2);
-            packet.ray.tfar[lane] = hits[i].t == no_hit ? std::numeric_limits<float>::infinity()
-                                                        : float((hits[i].t - moved) * (1 + 1e-6));
+            packet.ray.tfar[lane] = hits.t[i] == no_hit ? std::numeric_limits<float>::infinity()
+                                                        : float((hits.t[i] - moved) * (1 + 1e-6));
             packet.ray.time[lane] = 0;
             packet.ray.mask[lane] = opaque_mask | translucent_mask;
             packet.ray.id[lane] = 0;
@@ -289,26 +289,27 @@ void Facets::closest_packets(const Rays& rays, Hits& hits, bool coherent) const 
             const Index facet = packet.hit.primID[lane];
             const Vec3 origin = rays.origin[i], direction = rays.direction[i];
             const double t = distance_to(instance, facet, origin, direction);
+            Hit hit = hits[i];
             if (t < least_distance || t == no_hit)
-                exact_closest(origin, direction, packet.ray.tfar[lane], hits[i]);
-            else if (t < hits[i].t)
-                hits[i] = {t, instance, facet};
+                exact_closest(origin, direction, packet.ray.tfar[lane], hit);
+            else if (t < hit.t)
+                hit = {t, instance, facet};
+            hits.set(i, hit);
         }
     }
 }
 
 template <class Width>
-void Facets::block_packets(const ShadowRays& rays, std::span<unsigned char> visible) const {
+void Facets::block_packets(const ShadowRays& rays, std::span<const Index> asked,
+                           std::span<double> visible) const {
     embree::Query query(!instanced_);
-    for (std::size_t first = 0; first < rays.count; first += Width::size) {
+    for (std::size_t first = 0; first < asked.size(); first += Width::size) {
         typename Width::Shadows packet;
         alignas(64) std::array<int, Width::size> valid{};
-        const std::size_t lanes = std::min(Width::size, rays.count - first);
-        bool any = false;
+        const std::size_t lanes = std::min(Width::size, asked.size() - first);
         for (std::size_t lane = 0; lane < lanes; ++lane) {
-            const std::size_t i = first + lane;
-            valid[lane] = visible[i] != 0 && rays.grazing[i] == 0 ? -1 : 0;
-            any |= valid[lane] != 0;
+            const std::size_t i = asked[first + lane];
+            valid[lane] = rays.grazing[i] == 0 ? -1 : 0;
             packet.org_x[lane] = float(rays.origin.axis[0][i]);
             packet.org_y[lane] = float(rays.origin.axis[1][i]);
             packet.org_z[lane] = float(rays.origin.axis[2][i]);
@@ -322,13 +323,13 @@ void Facets::block_packets(const ShadowRays& rays, std::span<unsigned char> visi
             packet.id[lane] = 0;
             packet.flags[lane] = 0;
         }
-        if (any) embree::occluded(valid.data(), device_->scene, query, packet);
+        embree::occluded(valid.data(), device_->scene, query, packet);
         for (std::size_t lane = 0; lane < lanes; ++lane) {
-            const std::size_t i = first + lane;
-            if (valid[lane] != 0 && packet.tfar[lane] < 0) visible[i] = 0;
-            if (visible[i] != 0 && rays.grazing[i] != 0 &&
-                exact_blocked(rays.origin[i], rays.direction[i], rays.distance[i]))
-                visible[i] = 0;
+            const std::size_t i = asked[first + lane];
+            const bool blocked = valid[lane] != 0 ? packet.tfar[lane] < 0
+                                                  : exact_blocked(rays.origin[i], rays.direction[i],
+                                                                  rays.distance[i]);
+            if (blocked) visible[i] = 0;
         }
     }
 }
@@ -341,12 +342,13 @@ void Facets::closest(const Rays& rays, Hits& hits, bool coherent) const {
         closest_packets<Width8>(rays, hits, coherent);
 }
 
-void Facets::block(const ShadowRays& rays, std::span<unsigned char> visible) const {
+void Facets::block(const ShadowRays& rays, std::span<const Index> asked,
+                   std::span<double> visible) const {
     if (empty()) return;
     if (wide_)
-        block_packets<Width16>(rays, visible);
+        block_packets<Width16>(rays, asked, visible);
     else
-        block_packets<Width8>(rays, visible);
+        block_packets<Width8>(rays, asked, visible);
 }
 
 }  // namespace penumbra

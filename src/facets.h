@@ -47,8 +47,9 @@ class Facets {
     /// `coherent` tells that neighbouring rays are nearly parallel.
     void closest(const Rays& rays, Hits& hits, bool coherent) const;
 
-    /// Clears visible[i] where an opaque facet blocks shadow ray i.
-    void block(const ShadowRays& rays, std::span<unsigned char> visible) const;
+    /// Sets visible[i] to 0 where an opaque facet blocks shadow ray i, for the rays in `asked`.
+    void block(const ShadowRays& rays, std::span<const Index> asked,
+               std::span<double> visible) const;
 
     /// The nearest translucent facet with distance in (nearest, farthest).
     bool translucent(const Vec3& origin, const Vec3& direction, double nearest, double farthest,
@@ -60,7 +61,7 @@ class Facets {
     template <class Width>
     void closest_packets(const Rays&, Hits&, bool coherent) const;
     template <class Width>
-    void block_packets(const ShadowRays&, std::span<unsigned char>) const;
+    void block_packets(const ShadowRays&, std::span<const Index>, std::span<double>) const;
     /// Offers the facets along a ray, nearest first, to `accept` until it returns true.
     template <class Accept>
     bool walk(const Vec3& origin, const Vec3& direction, float from, double farthest, unsigned mask,

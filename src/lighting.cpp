@@ -19,13 +19,6 @@ constexpr std::size_t block_size = 64;  // neighbouring surface points that are 
 
 // ---- dense loops over arrays -------------------------------------------------------------------
 
-// Arrays of one vector each, for loops that the compiler turns into SIMD code.
-struct Lanes {
-    const double *x, *y, *z;
-    explicit Lanes(const Vectors& v)
-        : x(v.axis[0].data()), y(v.axis[1].data()), z(v.axis[2].data()) {}
-};
-
 PENUMBRA_VECTORISED
 void aim_at_point(const Vec3& source, Lanes position, std::size_t count, double* __restrict lx,
                   double* __restrict ly, double* __restrict lz, double* __restrict distance) {
@@ -164,7 +157,8 @@ bool gather_lit(const PreparedSource& source, const Surfaces& surfaces, LightWor
             continue;
         }
         any = true;
-        if (work.open[i] == 0 && (surfaces.diffuse[i] > 0 || surfaces.finish[i]->shines))
+        if (work.shaded && work.blockers.groups[i / block_size].any &&
+            (surfaces.diffuse[i] > 0 || surfaces.finish[i]->shines))
             work.lit.push_back(i);
     }
     return any;
@@ -206,6 +200,25 @@ void filter_light(const World& world, const Surfaces& surfaces, LightWork& work)
     }
 }
 
+// Asks what may block the shadow rays, block by block of the points that they start from.
+void block(const World& world, LightWork& work) {
+    work.asked.clear();
+    const std::size_t count = work.shadows.count;
+    for (std::size_t first = 0, last = 0; first < count; first = last) {
+        const std::size_t group = work.lit[first] / block_size;
+        while (last < count && work.lit[last] / block_size == group) ++last;
+        const BlockedBy& by = work.blockers.groups[group];
+        block_by_shapes(
+            world,
+            std::span(work.blockers.shapes).subspan(by.first_shape, by.last_shape - by.first_shape),
+            work.shadows, first, last, work.visible);
+        if (!by.facets) continue;
+        for (std::size_t k = first; k < last; ++k)
+            if (work.visible[k] != 0) work.asked.push_back(Index(k));
+    }
+    world.facets.block(work.shadows, work.asked, work.visible);
+}
+
 void cast_shadows(const World& world, const Surfaces& surfaces, LightWork& work) {
     ShadowRays& rays = work.shadows;
     rays.count = work.lit.size();
@@ -221,13 +234,8 @@ void cast_shadows(const World& world, const Surfaces& surfaces, LightWork& work)
         rays.grazing[k] = on_facet && std::abs(surfaces.facet_normal[i].dot(toward)) < grazing_sine;
         work.visible[k] = 1;
     }
-    const std::span<unsigned char> visible(work.visible.data(), rays.count);
-    block_by_shapes(world, rays, visible);
-    world.facets.block(rays, visible);
-    for (std::size_t k = 0; k < rays.count; ++k) {
-        const std::size_t i = work.lit[k];
-        if (visible[k] == 0) work.arriving[i] = 0;
-    }
+    block(world, work);
+    for (std::size_t k = 0; k < rays.count; ++k) work.arriving[work.lit[k]] *= work.visible[k];
 }
 
 // M K_S (R.V)^N of the lobes that the surface point shows; `mirrored` is R.V.
@@ -285,30 +293,6 @@ void add_source(const World& world, const PreparedSource& source, const Surfaces
 
 // ---- one light ---------------------------------------------------------------------------------
 
-// The range of n . p over a box.
-std::pair<double, double> extent_along(const Bounds& box, const Vec3& n) {
-    const Vec3 center = box.center(), half = (box.max - box.min) * 0.5;
-    const double middle = n.dot(center);
-    const double reach = std::abs(n.x) * half.x + std::abs(n.y) * half.y + std::abs(n.z) * half.z;
-    return {middle - reach, middle + reach};
-}
-
-// Do all segments between the boxes stay on one side of the plane (or start on it)?
-bool plane_between(const PreparedPlane& plane, const Bounds& from, const Bounds& to) {
-    const auto [low, high] = extent_along(from, plane.frame.normal);
-    const auto [source_low, source_high] = extent_along(to, plane.frame.normal);
-    constexpr double on_it = 1e-9;
-    const bool above = low >= plane.distance - on_it && source_low > plane.distance;
-    const bool below = high <= plane.distance + on_it && source_high < plane.distance;
-    return !above && !below;
-}
-
-bool all_open(const World& world, const SourceGroup& light, const Bounds& points) {
-    for (const PreparedPlane& plane : world.planes)
-        if (plane_between(plane, points, light.box)) return false;
-    return !may_block(world.blockers, points, light.box);
-}
-
 Bounds bounds_of(const Surfaces& surfaces, std::size_t first, std::size_t last) {
     Bounds box;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -321,21 +305,16 @@ Bounds bounds_of(const Surfaces& surfaces, std::size_t first, std::size_t last) 
     return box;
 }
 
-// Marks the points that nothing can shade from this light: first all of them, then block by block.
-// Returns whether that is all of them.
-bool find_open(const World& world, const SourceGroup& light, const Surfaces& surfaces,
-               LightWork& work) {
-    if (all_open(world, light, bounds_of(surfaces, 0, surfaces.count))) {
-        std::fill_n(work.open.begin(), surfaces.count, 1);
-        return true;
-    }
+// Boxes around all points, and around those of each block.
+void find_boxes(const Surfaces& surfaces, LightWork& work) {
+    work.all = {};
+    work.boxes.clear();
     for (std::size_t first = 0; first < surfaces.count; first += block_size) {
-        const std::size_t last = std::min(first + block_size, surfaces.count);
-        const bool open = all_open(world, light, bounds_of(surfaces, first, last));
-        std::fill(work.open.begin() + std::ptrdiff_t(first),
-                  work.open.begin() + std::ptrdiff_t(last), open);
+        const Bounds box = bounds_of(surfaces, first, std::min(first + block_size, surfaces.count));
+        work.boxes.push_back(box);
+        work.all.extend(box.min);
+        work.all.extend(box.max);
     }
-    return false;
 }
 
 // Point sources that neither fade nor are too weak to count.
@@ -355,7 +334,7 @@ bool matte(const Surfaces& surfaces) {
 
 LightWork::LightWork(std::size_t capacity)
     : toward(capacity), distance(capacity), cosine(capacity), arriving(capacity), filter(capacity),
-      filtered(capacity), open(capacity), shadows(capacity), visible(capacity) {
+      filtered(capacity), shadows(capacity), visible(capacity) {
     lit.reserve(capacity);
 }
 
@@ -373,8 +352,10 @@ void add_direct_light(const World& world, const Surfaces& surfaces, LightWork& w
         for (std::size_t i = 0; i < surfaces.count; ++i)
             radiance.axis[c][i] += surfaces.own.axis[c][i];
     const bool all_matte = matte(surfaces);
+    find_boxes(surfaces, work);
     for (const SourceGroup& light : world.lights) {
-        if (find_open(world, light, surfaces, work) && all_matte && plain(light)) {
+        work.shaded = work.blockers.find(world, work.all, work.boxes, light.box);
+        if (!work.shaded && all_matte && plain(light)) {
             auto& [red, green, blue] = radiance.axis;
             add_open_matte(light.sources.data(), light.sources.size(), Lanes(surfaces.position),
                            Lanes(surfaces.normal), Lanes(surfaces.pigment), surfaces.diffuse.data(),

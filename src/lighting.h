@@ -1,6 +1,7 @@
 // The light that reaches surfaces from the sources, and what they send to the eye of it.
 #pragma once
 
+#include "blockers.h"
 #include "surface.h"
 
 namespace penumbra {
@@ -10,12 +11,16 @@ struct LightWork {
     Vectors toward;                        ///< unit, to the source
     std::vector<double> distance, cosine;  ///< to the source; of the angle of incidence
     std::vector<double> arriving;          ///< share of the source's light: f_a, spot, shadow
-    Vectors filter;                   ///< what translucent surfaces leave of it, in such scenes
-    std::vector<double> filtered;     ///< one channel of pigment times that
-    std::vector<unsigned char> open;  ///< nothing can stand between the point and the light
-    std::vector<std::size_t> lit;     ///< surface points that need a shadow ray
+    Vectors filter;                ///< what translucent surfaces leave of it, in such scenes
+    std::vector<double> filtered;  ///< one channel of pigment times that
+    Bounds all;                    ///< around the points
+    std::vector<Bounds> boxes;     ///< around blocks of them
+    Blockers blockers;             ///< between the blocks and one light
+    bool shaded = false;           ///< anything may be
+    std::vector<std::size_t> lit;  ///< surface points that need a shadow ray
     ShadowRays shadows;
-    std::vector<unsigned char> visible;
+    std::vector<double> visible;  ///< 1 where the shadow ray reaches the source, else 0
+    std::vector<Index> asked;     ///< shadow rays that facets may block
 
     explicit LightWork(std::size_t capacity = 0);
 };

@@ -43,6 +43,13 @@ struct Vectors {
     }
 };
 
+/// Arrays of one vector each, for loops that the compiler turns into SIMD code.
+struct Lanes {
+    const double *x, *y, *z;
+    explicit Lanes(const Vectors& v, std::size_t first = 0)
+        : x(v.axis[0].data() + first), y(v.axis[1].data() + first), z(v.axis[2].data() + first) {}
+};
+
 /// Rays of one generation; the first `count` entries of each array are in use.
 struct Rays {
     std::size_t count = 0;
@@ -58,7 +65,25 @@ struct Hit {
     Index facet = no_index;  ///< of the instance's mesh
 };
 
-using Hits = std::vector<Hit>;
+/// What many rays hit.
+struct Hits {
+    std::vector<double> t;
+    std::vector<Index> object, facet;
+
+    explicit Hits(std::size_t count = 0) { clear(count); }
+    /// Makes them `count` times no hit.
+    void clear(std::size_t count) {
+        t.assign(count, no_hit);
+        object.assign(count, no_index);
+        facet.assign(count, no_index);
+    }
+    Hit operator[](std::size_t i) const { return {t[i], object[i], facet[i]}; }
+    void set(std::size_t i, const Hit& hit) {
+        t[i] = hit.t;
+        object[i] = hit.object;
+        facet[i] = hit.facet;
+    }
+};
 
 /// Rays from surface points towards one source.
 struct ShadowRays {

@@ -1,26 +1,37 @@
-// Is there anything between a group of surface points and a light?
+// Groups of rays, and whether they may touch a box.
 #pragma once
 
 #include "penumbra/scene.h"
 
-#include <span>
+#include <array>
 
 namespace penumbra {
 
-/// Boxes around groups of facets and around spheres, in a tree. Planes are not in it.
-struct BlockerTree {
-    struct Node {
-        Bounds box;
-        Index right = 0;  ///< the second child; the first follows its parent. 0: a leaf
+/// The convex hull of two boxes: all segments from one to the other lie in it. After Haines and
+/// Wallace 1991, "Shaft Culling for Efficient Ray-Traced Radiosity".
+struct Shaft {
+    /// A plane parallel to one axis that touches both boxes on their outside; points of the shaft
+    /// have weight_a p[a] + weight_b p[b] <= limit.
+    struct Side {
+        int a = 0, b = 0;
+        double weight_a = 0, weight_b = 0, limit = 0;
     };
-    std::vector<Node> nodes = {};
+    Bounds hull;
+    std::array<Side, 12> sides = {};
+    int count = 0;
 };
 
-BlockerTree make_blocker_tree(const Scene& scene);
+Shaft make_shaft(const Bounds& from, const Bounds& to);
 
-/// False only when no facet and no sphere touches the convex hull of the two boxes: then nothing
-/// but a plane can block a segment from one to the other. After Haines and Wallace 1991, "Shaft
-/// Culling for Efficient Ray-Traced Radiosity".
-bool may_block(const BlockerTree& tree, const Bounds& from, const Bounds& to);
+/// False only when no segment from one box to the other touches `box`.
+bool touches(const Shaft& shaft, const Bounds& box);
+
+/// Rays whose origins lie in one box and whose directions in another.
+struct Beam {
+    Bounds origins, directions;
+};
+
+/// False only when no ray of the beam touches `box`.
+bool touches(const Beam& beam, const Bounds& box);
 
 }  // namespace penumbra

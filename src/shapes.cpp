@@ -1,7 +1,11 @@
 #include "shapes.h"
 
+#include "shaft.h"
+#include "simd.h"
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace penumbra {
 
@@ -29,70 +33,202 @@ Crossings cross_plane(const PreparedPlane& plane, const Vec3& origin, const Vec3
 
 namespace {
 
-// Calls visit(object, crossings) for every sphere and plane along a ray.
-template <class Visit>
-void each_shape(const World& world, const Vec3& origin, const Vec3& direction, Visit visit) {
-    Index object = world.first_sphere();
-    for (const Sphere& sphere : world.scene.spheres)
-        visit(object++, cross_sphere(sphere, origin, direction));
-    for (const PreparedPlane& plane : world.planes)
-        visit(object++, cross_plane(plane, origin, direction));
+constexpr std::size_t block_size = 64;       // neighbouring rays that are looked at together
+constexpr std::size_t few_spheres = 4;       // are tested without asking whether a block is near
+constexpr std::size_t most_candidates = 24;  // of a block of rays, before each ray goes alone
+
+// ---- dense loops over arrays: the tests of cross_sphere() and cross_plane() ---------------------
+
+PENUMBRA_VECTORISED
+void nearest_on_sphere(const Vec3& center, double radius2, Lanes origin, Lanes direction,
+                       std::size_t count, Index object, double* __restrict t,
+                       Index* __restrict objects) {
+    const double cx = center.x, cy = center.y, cz = center.z;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double x = cx - origin.x[i], y = cy - origin.y[i], z = cz - origin.z[i];
+        const double square = x * x + y * y + z * z;
+        const double closest = x * direction.x[i] + y * direction.y[i] + z * direction.z[i];
+        const double half2 = radius2 - square + closest * closest;
+        const double half = std::sqrt(half2 > 0 ? half2 : 0);
+        const double near = closest - half, far = closest + half;
+        const double first = near >= least_distance ? near : far;
+        const bool away = (square >= radius2) & (closest < least_cosine);
+        const bool crosses = (half2 > least_cosine) & !away & (first >= least_distance) &
+                             (first < greatest_depth) & (first < t[i]);
+        t[i] = crosses ? first : t[i];
+        objects[i] = crosses ? object : objects[i];
+    }
+}
+
+PENUMBRA_VECTORISED
+void nearest_on_plane(const Vec3& normal, double distance, Lanes origin, Lanes direction,
+                      std::size_t count, Index object, double* __restrict t,
+                      Index* __restrict objects) {
+    const double nx = normal.x, ny = normal.y, nz = normal.z;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double along = nx * direction.x[i] + ny * direction.y[i] + nz * direction.z[i];
+        const double height = nx * origin.x[i] + ny * origin.y[i] + nz * origin.z[i];
+        const double there = (distance - height) / along;
+        const bool crosses = (std::abs(along) >= least_cosine) & (there >= least_distance) &
+                             (there <= greatest_depth) & (there < t[i]);
+        t[i] = crosses ? there : t[i];
+        objects[i] = crosses ? object : objects[i];
+    }
+}
+
+PENUMBRA_VECTORISED
+void block_by_sphere(const Vec3& center, double radius2, Lanes origin, Lanes direction,
+                     const double* __restrict distance, std::size_t count,
+                     double* __restrict visible) {
+    const double cx = center.x, cy = center.y, cz = center.z;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double x = cx - origin.x[i], y = cy - origin.y[i], z = cz - origin.z[i];
+        const double square = x * x + y * y + z * z;
+        const double closest = x * direction.x[i] + y * direction.y[i] + z * direction.z[i];
+        const double half2 = radius2 - square + closest * closest;
+        const double half = std::sqrt(half2 > 0 ? half2 : 0), end = distance[i] - shadow_margin;
+        const double near = closest - half, far = closest + half;
+        const bool away = (square >= radius2) & (closest < least_cosine);
+        const bool near_blocks = (near > shadow_margin) & (near < end) & (near < greatest_depth);
+        const bool far_blocks = (far > shadow_margin) & (far < end) & (far < greatest_depth);
+        const bool blocks = (half2 > least_cosine) & !away & (near_blocks | far_blocks);
+        visible[i] = blocks ? 0 : visible[i];
+    }
+}
+
+// A ray never meets the plane again that it starts on.
+void block_by_plane(const PreparedPlane& plane, Index self, const ShadowRays& rays,
+                    std::size_t first, std::size_t last, std::span<double> visible) {
+    for (std::size_t i = first; i < last; ++i) {
+        if (visible[i] == 0 || rays.object[i] == self) continue;
+        const Crossings crossings = cross_plane(plane, rays.origin[i], rays.direction[i]);
+        if (crossings.count > 0 && crossings.t[0] > shadow_margin &&
+            crossings.t[0] < rays.distance[i] - shadow_margin)
+            visible[i] = 0;
+    }
+}
+
+// ---- groups of rays ----------------------------------------------------------------------------
+
+Bounds range_of(const Vectors& vectors, std::size_t first, std::size_t last) {
+    Bounds box;
+    for (std::size_t i = first; i < last; ++i) box.extend(vectors[i]);
+    return box;
+}
+
+// A ray by itself, up to a distance.
+struct Segment {
+    Vec3 origin, inverse;  // of the direction
+    const double& end;
+
+    bool touches(const Bounds& box) const {
+        double enter = 0, leave = end;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double a = (box.min[axis] - origin[axis]) * inverse[axis];
+            const double b = (box.max[axis] - origin[axis]) * inverse[axis];
+            // The order of the arguments lets NaN, of 0 x infinity, pass.
+            enter = std::max(enter, std::min(a, b));
+            leave = std::min(leave, std::max(a, b));
+        }
+        return !(enter > leave);
+    }
+};
+
+Vec3 inverse_of(const Vec3& direction) {
+    return {1 / direction.x, 1 / direction.y, 1 / direction.z};
+}
+
+void nearest_sphere(const World& world, const Rays& rays, std::size_t i, Hits& hits) {
+    const Vec3 origin = rays.origin[i], direction = rays.direction[i];
+    const Segment segment = {origin, inverse_of(direction), hits.t[i]};
+    visit_boxes(
+        world.sphere_boxes, [&](const Bounds& box) { return segment.touches(box); },
+        [&](Index object) {
+            const Crossings crossings = cross_sphere(world.sphere(object), origin, direction);
+            for (int k = 0; k < crossings.count; ++k) {
+                const double t = crossings.t[std::size_t(k)];
+                if (t >= least_distance && t < hits.t[i]) hits.set(i, {t, object, no_index});
+            }
+            return false;
+        });
+}
+
+void nearest_spheres(const World& world, const Rays& rays, std::span<const Index> objects,
+                     std::size_t first, std::size_t last, Hits& hits) {
+    for (const Index object : objects) {
+        const Sphere& sphere = world.sphere(object);
+        nearest_on_sphere(sphere.center, sphere.radius * sphere.radius, Lanes(rays.origin, first),
+                          Lanes(rays.direction, first), last - first, object, hits.t.data() + first,
+                          hits.object.data() + first);
+    }
+}
+
+void nearest_of_many(const World& world, const Rays& rays, Hits& hits,
+                     std::vector<Index>& candidates) {
+    for (std::size_t first = 0; first < rays.count; first += block_size) {
+        const std::size_t last = std::min(first + block_size, rays.count);
+        const Beam beam = {.origins = range_of(rays.origin, first, last),
+                           .directions = range_of(rays.direction, first, last)};
+        candidates.clear();
+        const bool too_many = visit_boxes(
+            world.sphere_boxes, [&](const Bounds& box) { return touches(beam, box); },
+            [&](Index object) {
+                candidates.push_back(object);
+                return candidates.size() > most_candidates;
+            });
+        if (!too_many)
+            nearest_spheres(world, rays, candidates, first, last, hits);
+        else
+            for (std::size_t i = first; i < last; ++i) nearest_sphere(world, rays, i, hits);
+    }
 }
 
 }  // namespace
 
-void closest_shapes(const World& world, const Rays& rays, Hits& hits) {
-    for (std::size_t i = 0; i < rays.count; ++i) {
-        Hit& hit = hits[i];
-        each_shape(world, rays.origin[i], rays.direction[i],
-                   [&hit](Index object, const Crossings& crossings) {
-                       for (int k = 0; k < crossings.count; ++k) {
-                           const double t = crossings.t[std::size_t(k)];
-                           if (t >= least_distance && t < hit.t) hit = {t, object, no_index};
-                       }
-                   });
+void closest_shapes(const World& world, const Rays& rays, Hits& hits, std::vector<Index>& scratch) {
+    if (world.scene.spheres.size() > few_spheres) {
+        nearest_of_many(world, rays, hits, scratch);
+    } else {
+        scratch.resize(world.scene.spheres.size());
+        std::iota(scratch.begin(), scratch.end(), world.first_sphere());
+        nearest_spheres(world, rays, scratch, 0, rays.count, hits);
     }
+    Index object = world.first_plane();
+    for (const PreparedPlane& plane : world.planes)
+        nearest_on_plane(plane.frame.normal, plane.distance, Lanes(rays.origin),
+                         Lanes(rays.direction), rays.count, object++, hits.t.data(),
+                         hits.object.data());
 }
 
-void block_by_shapes(const World& world, const ShadowRays& rays, std::span<unsigned char> visible) {
-    const auto blocked = [](const Crossings& crossings, double end) {
-        for (int k = 0; k < crossings.count; ++k)
-            if (crossings.t[std::size_t(k)] > shadow_margin && crossings.t[std::size_t(k)] < end)
-                return true;
-        return false;
-    };
-    Index object = world.first_sphere();
-    for (const Sphere& sphere : world.scene.spheres) {
-        if (!world.finish_of(object++).opaque) continue;
-        for (std::size_t i = 0; i < rays.count; ++i)
-            if (visible[i] != 0 && blocked(cross_sphere(sphere, rays.origin[i], rays.direction[i]),
-                                           rays.distance[i] - shadow_margin))
-                visible[i] = 0;
-    }
-    for (const PreparedPlane& plane : world.planes) {
-        const Index self = object++;
-        if (!world.finish_of(self).opaque) continue;
-        for (std::size_t i = 0; i < rays.count; ++i)
-            // A ray never meets the plane again that it starts on.
-            if (visible[i] != 0 && rays.object[i] != self &&
-                blocked(cross_plane(plane, rays.origin[i], rays.direction[i]),
-                        rays.distance[i] - shadow_margin))
-                visible[i] = 0;
+void block_by_shapes(const World& world, std::span<const Index> objects, const ShadowRays& rays,
+                     std::size_t first, std::size_t last, std::span<double> visible) {
+    for (const Index object : objects) {
+        if (object >= world.first_plane()) {
+            block_by_plane(world.plane(object), object, rays, first, last, visible);
+            continue;
+        }
+        const Sphere& sphere = world.sphere(object);
+        block_by_sphere(sphere.center, sphere.radius * sphere.radius, Lanes(rays.origin, first),
+                        Lanes(rays.direction, first), rays.distance.data() + first, last - first,
+                        visible.data() + first);
     }
 }
 
 bool translucent_shape(const World& world, const Vec3& origin, const Vec3& direction,
                        double nearest, Hit& hit) {
     bool found = false;
-    each_shape(world, origin, direction, [&](Index object, const Crossings& crossings) {
-        if (world.finish_of(object).opaque) return;
+    const auto offer = [&](Index object, const Crossings& crossings) {
         for (int k = 0; k < crossings.count; ++k) {
             const double t = crossings.t[std::size_t(k)];
             if (!(t > nearest && t < hit.t)) continue;
             hit = {t, object, no_index};
             found = true;
         }
-    });
+    };
+    for (const Index object : world.translucent_shapes)
+        offer(object, object >= world.first_plane()
+                          ? cross_plane(world.plane(object), origin, direction)
+                          : cross_sphere(world.sphere(object), origin, direction));
     return found;
 }
 

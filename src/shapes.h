@@ -18,11 +18,14 @@ Crossings cross_sphere(const Sphere& sphere, const Vec3& origin, const Vec3& dir
 /// POV-Ray's plane test (source/backend/shape/planes.cpp of 3.7). `direction` is unit.
 Crossings cross_plane(const PreparedPlane& plane, const Vec3& origin, const Vec3& direction);
 
-/// Lowers hits where a sphere or plane is nearer than what they hold.
-void closest_shapes(const World& world, const Rays& rays, Hits& hits);
+/// Lowers hits where a sphere or plane is nearer than what they hold. `scratch` is kept between
+/// calls.
+void closest_shapes(const World& world, const Rays& rays, Hits& hits, std::vector<Index>& scratch);
 
-/// Clears visible[i] where an opaque sphere or plane blocks shadow ray i.
-void block_by_shapes(const World& world, const ShadowRays& rays, std::span<unsigned char> visible);
+/// Sets visible[i] to 0 where one of the spheres and planes `objects`, all of them opaque, blocks
+/// shadow ray i, for i in [first, last).
+void block_by_shapes(const World& world, std::span<const Index> objects, const ShadowRays& rays,
+                     std::size_t first, std::size_t last, std::span<double> visible);
 
 /// The nearest translucent sphere or plane with distance in (nearest, hit.t).
 bool translucent_shape(const World& world, const Vec3& origin, const Vec3& direction,

@@ -19,7 +19,6 @@ namespace penumbra {
 namespace {
 
 constexpr int tile_side = 32;  // pixels; fixed, so that the picture does not depend on threads
-constexpr int block_side = 4;  // rays of neighbouring pixels share a packet
 
 // A point of a pixel relative to its centre, in pixels, and how much it counts.
 struct PixelSample {
@@ -41,6 +40,7 @@ std::vector<PixelSample> pixel_samples(int n) {
 struct Workspace {
     Generation current, next;
     Hits hits;
+    std::vector<Index> shapes;  // scratch
     Surfaces surfaces;
     std::vector<std::size_t> ray_of;  // surface point -> ray
     Vectors radiance;
@@ -76,23 +76,30 @@ void add_primary_ray(const Job& job, double x, double y, const Path& path, Gener
         rays.push(job.view.location, (job.view.direction + shift).normalized(), path);
 }
 
-// Pixels in blocks of 4 x 4, so that the rays of a packet are close together.
+// Every other bit of a number below 1024, from the lowest on.
+int even_bits(unsigned i) {
+    unsigned bits = 0;
+    for (unsigned k = 0; k < 5; ++k) bits |= (i >> k) & (1U << k);
+    return int(bits);
+}
+
+// Pixels along a Z-order curve (Morton 1966), so that the rays of a packet are close together, and
+// so are those of a few packets.
 void primary_rays(const Job& job, const Tile& tile, const PixelSample& sample, Generation& rays) {
     rays.clear();
-    for (int by = 0; by < tile.height; by += block_side)
-        for (int bx = 0; bx < tile.width; bx += block_side)
-            for (int y = by; y < std::min(by + block_side, tile.height); ++y)
-                for (int x = bx; x < std::min(bx + block_side, tile.width); ++x) {
-                    const Path path = {.weight = Vec3(sample.weight),
-                                       .pixel = std::uint32_t(y * tile.width + x),
-                                       .inside = job.inside};
-                    add_primary_ray(job, tile.x + x + sample.x, tile.y + y + sample.y, path, rays);
-                }
+    for (unsigned i = 0; i < unsigned(tile_side * tile_side); ++i) {
+        const int x = even_bits(i), y = even_bits(i >> 1U);
+        if (x >= tile.width || y >= tile.height) continue;
+        const Path path = {.weight = Vec3(sample.weight),
+                           .pixel = std::uint32_t(y * tile.width + x),
+                           .inside = job.inside};
+        add_primary_ray(job, tile.x + x + sample.x, tile.y + y + sample.y, path, rays);
+    }
 }
 
 void find_hits(const World& world, bool coherent, Workspace& work) {
-    work.hits.assign(work.current.rays.count, Hit{});
-    closest_shapes(world, work.current.rays, work.hits);
+    work.hits.clear(work.current.rays.count);
+    closest_shapes(world, work.current.rays, work.hits, work.shapes);
     world.facets.closest(work.current.rays, work.hits, coherent);
 }
 
@@ -113,7 +120,7 @@ void find_surfaces(const World& world, Workspace& work) {
     work.surfaces.count = 0;
     work.ray_of.clear();
     for (std::size_t i = 0; i < rays.rays.count; ++i) {
-        if (work.hits[i].object == no_index) {
+        if (work.hits.object[i] == no_index) {
             work.pixels[rays.paths[i].pixel] +=
                 rays.paths[i].weight * sky_light(world, rays.rays.direction[i]);
             continue;

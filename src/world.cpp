@@ -1,5 +1,7 @@
 #include "world.h"
 
+#include "blockers.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -58,7 +60,9 @@ PreparedSource prepare(const Source& s) {
 
 }  // namespace
 
-World::World(const Scene& given) : scene(given), facets(given), blockers(make_blocker_tree(given)) {
+World::World(const Scene& given)
+    : scene(given), facets(given), facet_boxes(boxes_of_facets(given)),
+      sphere_boxes(boxes_of_spheres(given)) {
     for (const Material& m : scene.materials) {
         finishes.push_back(prepare(m, scene.ambient));
         translucent |= !opaque(m);
@@ -76,6 +80,9 @@ World::World(const Scene& given) : scene(given), facets(given), blockers(make_bl
         const PlaneFrame frame = plane_frame(plane);
         planes.push_back({frame, frame.normal.dot(plane.point)});
     }
+    const Index objects = first_plane() + Index(planes.size());
+    for (Index object = first_sphere(); object < objects; ++object)
+        if (!finish_of(object).opaque) translucent_shapes.push_back(object);
 }
 
 Index World::material_of(Index object) const {

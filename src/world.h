@@ -1,9 +1,9 @@
 // A scene made ready for tracing: everything that is the same for all rays is computed once.
 #pragma once
 
+#include "box_tree.h"
 #include "facets.h"
 #include "sampler.h"
-#include "shaft.h"
 
 #include "penumbra/scene.h"
 
@@ -53,13 +53,15 @@ struct PreparedPlane {
 struct World {
     const Scene& scene;
     Facets facets;
-    BlockerTree blockers;
+    BoxTree facet_boxes;                 ///< around runs of facets
+    BoxTree sphere_boxes;                ///< items are objects
     std::vector<Finish> finishes = {};   ///< by material
     std::vector<Sampler> samplers = {};  ///< by texture
     std::vector<SourceGroup> lights = {};
     std::vector<PreparedPlane> planes = {};
-    bool translucent = false;  ///< any object lets light through
-    bool absorbing = false;    ///< any interior takes light away
+    std::vector<Index> translucent_shapes = {};  ///< spheres and planes, as objects
+    bool translucent = false;                    ///< any object lets light through
+    bool absorbing = false;                      ///< any interior takes light away
 
     explicit World(const Scene& given);
 
@@ -68,6 +70,8 @@ struct World {
     Index first_plane() const { return Index(scene.instances.size() + scene.spheres.size()); }
     Index material_of(Index object) const;
     const Finish& finish_of(Index object) const { return finishes[material_of(object)]; }
+    const Sphere& sphere(Index object) const { return scene.spheres[object - first_sphere()]; }
+    const PreparedPlane& plane(Index object) const { return planes[object - first_plane()]; }
 };
 
 }  // namespace penumbra

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 using namespace penumbra;
@@ -32,6 +33,8 @@ struct Random {
         return {(*this)(-size, size), (*this)(-size, size), (*this)(-size, size)};
     }
 };
+
+const std::array<Index, 1> first_ray = {0};
 
 Rays one_ray(const Vec3& origin, const Vec3& direction) {
     Rays rays(1);
@@ -177,8 +180,8 @@ TEST_CASE("shadow rays, are blocked only between the margins of both ends") {
     rays.distance[0] = 5;
     for (const bool grazing : {false, true}) {  // both ways of asking
         rays.grazing[0] = grazing;
-        unsigned char visible = 1;
-        facets.block(rays, {&visible, 1});
+        double visible = 1;
+        facets.block(rays, first_ray, {&visible, 1});
         CHECK((visible == 0) == (height > 1e-3 && height < 5 - 1e-3));
     }
 }
@@ -203,8 +206,8 @@ TEST_CASE("shadow rays, at a grazing angle do not find their own facet") {
         rays.direction.set(0, (along + up * 1e-4).normalized());
         rays.distance[0] = 0.5;
         rays.grazing[0] = 1;
-        unsigned char visible = 1;
-        facets.block(rays, {&visible, 1});
+        double visible = 1;
+        facets.block(rays, first_ray, {&visible, 1});
         REQUIRE(visible == 1);
     }
 }
@@ -226,8 +229,10 @@ TEST_CASE("shadow rays, end in scenes with instances") {
         rays.direction.set(i, to.normalized());
         rays.distance[i] = to.length();
     }
-    std::vector<unsigned char> visible(count, 1);
-    facets.block(rays, visible);
+    std::vector<Index> asked(count);
+    std::iota(asked.begin(), asked.end(), Index(0));
+    std::vector<double> visible(count, 1);
+    facets.block(rays, asked, visible);
     const auto blocked = std::count(visible.begin(), visible.end(), 0);
     CHECK(blocked > 20);
     CHECK(blocked < 1000);

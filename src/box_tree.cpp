@@ -1,0 +1,60 @@
+#include "box_tree.h"
+
+#include <algorithm>
+#include <span>
+
+namespace penumbra {
+
+namespace {
+
+// Splits the items at the median of the longest axis of their boxes' centres.
+void build(BoxTree& tree, std::span<BoxedItem> items) {
+    const std::size_t self = tree.nodes.size();
+    tree.nodes.emplace_back();
+    Bounds all, centers;
+    for (const BoxedItem& item : items) {
+        all.extend(item.box.min);
+        all.extend(item.box.max);
+        centers.extend(item.box.center());
+    }
+    tree.nodes[self].box = all;
+    if (items.size() == 1) {
+        tree.nodes[self].item = items[0].item;
+        return;
+    }
+    const Vec3 size = centers.max - centers.min;
+    const int axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
+    const std::size_t half = items.size() / 2;
+    std::nth_element(items.begin(), items.begin() + std::ptrdiff_t(half), items.end(),
+                     [axis](const BoxedItem& a, const BoxedItem& b) {
+                         return a.box.min[axis] + a.box.max[axis] <
+                                b.box.min[axis] + b.box.max[axis];
+                     });
+    build(tree, items.first(half));
+    tree.nodes[self].right = Index(tree.nodes.size());
+    build(tree, items.subspan(half));
+}
+
+}  // namespace
+
+Bounds transformed(const Bounds& box, const Matrix& transform) {
+    const Vec3 move(transform[3][0], transform[3][1], transform[3][2]);
+    Bounds result = {.min = move, .max = move};
+    for (int to = 0; to < 3; ++to)
+        for (int from = 0; from < 3; ++from) {
+            const double a = box.min[from] * transform[from][to];
+            const double b = box.max[from] * transform[from][to];
+            result.min[to] += std::min(a, b);
+            result.max[to] += std::max(a, b);
+        }
+    return result;
+}
+
+BoxTree make_box_tree(std::vector<BoxedItem> items) {
+    BoxTree tree;
+    tree.nodes.reserve(2 * items.size());
+    if (!items.empty()) build(tree, items);
+    return tree;
+}
+
+}  // namespace penumbra
