@@ -12,6 +12,10 @@ namespace {
 
 constexpr unsigned opaque_mask = 1, translucent_mask = 2;
 
+// Below this angle to its facet a shadow ray may find that facet again: float32 rounds the start
+// point of a normalised scene by up to 1e-6, and shadow_margin is 1e-3.
+constexpr double grazing_sine = 4e-3;
+
 struct Width8 {
     using RayHits = RTCRayHit8;
     using Shadows = RTCRay8;
@@ -309,13 +313,13 @@ void Facets::block_packets(const ShadowRays& rays, std::span<const Index> asked,
         const std::size_t lanes = std::min(Width::size, asked.size() - first);
         for (std::size_t lane = 0; lane < lanes; ++lane) {
             const std::size_t i = asked[first + lane];
-            valid[lane] = rays.grazing[i] == 0 ? -1 : 0;
-            packet.org_x[lane] = float(rays.origin.axis[0][i]);
-            packet.org_y[lane] = float(rays.origin.axis[1][i]);
-            packet.org_z[lane] = float(rays.origin.axis[2][i]);
-            packet.dir_x[lane] = float(rays.direction.axis[0][i]);
-            packet.dir_y[lane] = float(rays.direction.axis[1][i]);
-            packet.dir_z[lane] = float(rays.direction.axis[2][i]);
+            valid[lane] = rays.steepness[i] < grazing_sine ? 0 : -1;
+            packet.org_x[lane] = float(rays.origin.x[i]);
+            packet.org_y[lane] = float(rays.origin.y[i]);
+            packet.org_z[lane] = float(rays.origin.z[i]);
+            packet.dir_x[lane] = float(rays.direction.x[i]);
+            packet.dir_y[lane] = float(rays.direction.y[i]);
+            packet.dir_z[lane] = float(rays.direction.z[i]);
             packet.tnear[lane] = float(shadow_margin);
             packet.tfar[lane] = float(rays.distance[i] - shadow_margin);
             packet.time[lane] = 0;

@@ -1,28 +1,22 @@
 // The light that reaches surfaces from the sources, and what they send to the eye of it.
 #pragma once
 
-#include "blockers.h"
-#include "surface.h"
+#include "light_loops.h"
 
 namespace penumbra {
 
-/// Scratch space of add_direct_light(), kept between calls. One entry a surface point.
+/// Scratch space of add_direct_light(), kept between calls.
 struct LightWork {
-    Vectors toward;                        ///< unit, to the source
-    std::vector<double> distance, cosine;  ///< to the source; of the angle of incidence
-    std::vector<double> arriving;          ///< share of the source's light: f_a, spot, shadow
-    Vectors filter;                ///< what translucent surfaces leave of it, in such scenes
-    std::vector<double> filtered;  ///< one channel of pigment times that
-    Bounds all;                    ///< around the points
-    std::vector<Bounds> boxes;     ///< around blocks of them
-    Blockers blockers;             ///< between the blocks and one light
-    bool shaded = false;           ///< anything may be
-    std::vector<std::size_t> lit;  ///< surface points that need a shadow ray
-    ShadowRays shadows;
-    std::vector<double> visible;  ///< 1 where the shadow ray reaches the source, else 0
-    std::vector<Index> asked;     ///< shadow rays that facets may block
+    Arrival arrival;
+    std::vector<Block> blocks;
+    std::vector<Bounds> boxes;            ///< around the blocks
+    Bounds all;                           ///< around all points
+    std::vector<unsigned char> receives;  ///< whether a point could show light from a source
+    Blockers blockers;                    ///< between the blocks and one light
+    std::vector<std::size_t> shaded;      ///< blocks between which and the light anything may be
+    std::vector<Index> asked;             ///< points whose shadow rays facets may block
 
-    explicit LightWork(std::size_t capacity = 0);
+    explicit LightWork(std::size_t capacity = 0) : arrival(capacity), receives(capacity) {}
 };
 
 /// POV-Ray's tint of metallic highlights and reflections: 1 + m (1 - F)(P - 1), where F is its

@@ -45,7 +45,10 @@ struct Vectors {
 
 /// Arrays of one vector each, for loops that the compiler turns into SIMD code.
 struct Lanes {
-    const double *x, *y, *z;
+    const double *x = nullptr, *y = nullptr, *z = nullptr;
+    Vec3 operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
+    Lanes from(std::size_t first) const { return {x + first, y + first, z + first}; }
+    Lanes(const double* xs, const double* ys, const double* zs) : x(xs), y(ys), z(zs) {}
     explicit Lanes(const Vectors& v, std::size_t first = 0)
         : x(v.axis[0].data() + first), y(v.axis[1].data() + first), z(v.axis[2].data() + first) {}
 };
@@ -85,18 +88,19 @@ struct Hits {
     }
 };
 
-/// Rays from surface points towards one source.
+/// Rays from surface points towards one source, in arrays of somebody else's.
 struct ShadowRays {
-    std::size_t count = 0;
-    Vectors origin, direction;           ///< directions are unit
-    std::vector<double> distance;        ///< to the source
-    std::vector<Index> object;           ///< that the ray starts on
-    std::vector<unsigned char> grazing;  ///< leaves its facet at so small an angle that float32
-                                         ///< could find that facet again
+    Lanes origin, direction;           ///< directions are unit
+    const double* distance = nullptr;  ///< to the source
+    /// Of rays that leave a facet: sine of the angle to it. At a small one float32 could find that
+    /// facet again.
+    const double* steepness = nullptr;
+    const Index* object = nullptr;  ///< that the ray starts on
+};
 
-    explicit ShadowRays(std::size_t capacity = 0)
-        : origin(capacity), direction(capacity), distance(capacity), object(capacity),
-          grazing(capacity) {}
+/// [first, last) of some arrays.
+struct IndexRange {
+    std::size_t first = 0, last = 0;
 };
 
 }  // namespace penumbra

@@ -1,5 +1,7 @@
 #include "penumbra/scene.h"
 
+#include "box_tree.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,14 +15,41 @@ void Bounds::extend(const Vec3& p) {
     }
 }
 
+namespace {
+
+// The vertices that facets use, and the box around them: a file may hold others.
+struct Corners {
+    std::vector<bool> used = {};
+    Bounds box = {};
+
+    explicit Corners(const Mesh& mesh) : used(mesh.positions.size(), false) {
+        for (const auto& triangle : mesh.triangles)
+            for (const Index corner : triangle) used[corner] = true;
+        for (std::size_t i = 0; i < used.size(); ++i)
+            if (used[i]) box.extend(Vec3(mesh.positions[i]));
+    }
+};
+
+bool contains(const Bounds& box, const Bounds& other) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(other.min[axis] >= box.min[axis] && other.max[axis] <= box.max[axis])) return false;
+    return true;
+}
+
+}  // namespace
+
 Bounds bounds(const Scene& scene) {
     Bounds box;
+    std::vector<std::optional<Corners>> corners(scene.meshes.size());
     for (const Instance& instance : scene.instances) {
         const Mesh& mesh = scene.meshes[instance.mesh];
-        // Only corners of facets count: a file may hold vertices that nothing uses.
-        for (const auto& triangle : mesh.triangles)
-            for (const Index corner : triangle)
-                box.extend(Vec3(mesh.positions[corner]) * instance.transform);
+        if (mesh.triangles.empty()) continue;
+        auto& known = corners[instance.mesh];
+        if (!known) known.emplace(mesh);
+        // Of many instances few reach further than those before.
+        if (contains(box, transformed(known->box, instance.transform))) continue;
+        for (std::size_t i = 0; i < known->used.size(); ++i)
+            if (known->used[i]) box.extend(Vec3(mesh.positions[i]) * instance.transform);
     }
     for (const Sphere& sphere : scene.spheres) {
         box.extend(sphere.center - Vec3(sphere.radius));

@@ -96,10 +96,9 @@ void block_by_sphere(const Vec3& center, double radius2, Lanes origin, Lanes dir
     }
 }
 
-// A ray never meets the plane again that it starts on.
 void block_by_plane(const PreparedPlane& plane, Index self, const ShadowRays& rays,
-                    std::size_t first, std::size_t last, std::span<double> visible) {
-    for (std::size_t i = first; i < last; ++i) {
+                    const IndexRange& range, std::span<double> visible) {
+    for (std::size_t i = range.first; i < range.last; ++i) {
         if (visible[i] == 0 || rays.object[i] == self) continue;
         const Crossings crossings = cross_plane(plane, rays.origin[i], rays.direction[i]);
         if (crossings.count > 0 && crossings.t[0] > shadow_margin &&
@@ -201,16 +200,16 @@ void closest_shapes(const World& world, const Rays& rays, Hits& hits, std::vecto
 }
 
 void block_by_shapes(const World& world, std::span<const Index> objects, const ShadowRays& rays,
-                     std::size_t first, std::size_t last, std::span<double> visible) {
+                     const IndexRange& range, std::span<double> visible) {
     for (const Index object : objects) {
         if (object >= world.first_plane()) {
-            block_by_plane(world.plane(object), object, rays, first, last, visible);
+            block_by_plane(world.plane(object), object, rays, range, visible);
             continue;
         }
         const Sphere& sphere = world.sphere(object);
-        block_by_sphere(sphere.center, sphere.radius * sphere.radius, Lanes(rays.origin, first),
-                        Lanes(rays.direction, first), rays.distance.data() + first, last - first,
-                        visible.data() + first);
+        block_by_sphere(sphere.center, sphere.radius * sphere.radius, rays.origin.from(range.first),
+                        rays.direction.from(range.first), rays.distance + range.first,
+                        range.last - range.first, visible.data() + range.first);
     }
 }
 

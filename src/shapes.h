@@ -23,9 +23,9 @@ Crossings cross_plane(const PreparedPlane& plane, const Vec3& origin, const Vec3
 void closest_shapes(const World& world, const Rays& rays, Hits& hits, std::vector<Index>& scratch);
 
 /// Sets visible[i] to 0 where one of the spheres and planes `objects`, all of them opaque, blocks
-/// shadow ray i, for i in [first, last).
+/// shadow ray i, for i in `range`. A ray never meets the plane again that it starts on.
 void block_by_shapes(const World& world, std::span<const Index> objects, const ShadowRays& rays,
-                     std::size_t first, std::size_t last, std::span<double> visible);
+                     const IndexRange& range, std::span<double> visible);
 
 /// The nearest translucent sphere or plane with distance in (nearest, hit.t).
 bool translucent_shape(const World& world, const Vec3& origin, const Vec3& direction,

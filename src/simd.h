@@ -8,3 +8,12 @@
 #else
 #define PENUMBRA_VECTORISED
 #endif
+
+/// Before a loop of which no turn depends on another.
+#if defined(__clang__)
+#define PENUMBRA_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#elif defined(__GNUC__)
+#define PENUMBRA_INDEPENDENT _Pragma("GCC ivdep")
+#else
+#define PENUMBRA_INDEPENDENT
+#endif

@@ -87,12 +87,14 @@ Geometry on_facet(const World& world, const Hit& hit, const Vec3& point) {
 
 Geometry on_sphere(const Sphere& sphere, const Vec3& point) {
     const Vec3 normal = (point - sphere.center) * (1 / sphere.radius);
-    return {.normal = normal, .texcoord = sphere_texcoord(normal)};
+    return {.normal = normal, .facet_normal = normal, .texcoord = sphere_texcoord(normal)};
 }
 
 Geometry on_plane(const PlaneFrame& frame, const Vec3& point) {
     const Vec3 offset = point - frame.origin;
-    return {.normal = frame.normal, .texcoord = {offset.dot(frame.u), offset.dot(frame.v)}};
+    return {.normal = frame.normal,
+            .facet_normal = frame.normal,
+            .texcoord = {offset.dot(frame.u), offset.dot(frame.v)}};
 }
 
 bool odd_cell(const Checker& checker, const Vec3& point) {

@@ -40,7 +40,7 @@ struct Surfaces {
     std::size_t count = 0;
     Vectors position, normal, view;  ///< normal is unit and turned to the eye; view comes from it
     Vectors mirrored;                ///< view mirrored by the normal; unit but for rounding
-    Vectors facet_normal;            ///< unit geometric normal; zero on spheres and planes
+    Vectors facet_normal;            ///< unit geometric normal; of spheres and planes `normal`
     Vectors pigment;
     Vectors tint;                 ///< takes the pigment's place in highlight and mirror
     Vectors own;                  ///< ambient and emitted light

@@ -36,6 +36,25 @@ struct Random {
 
 const std::array<Index, 1> first_ray = {0};
 
+// Shadow rays with arrays of their own.
+struct Shadows {
+    Vectors origin, direction;
+    std::vector<double> distance, steepness;
+    explicit Shadows(std::size_t count)
+        : origin(count), direction(count), distance(count), steepness(count, 1) {}
+    void set(std::size_t i, const Vec3& from, const Vec3& toward, double length) {
+        origin.set(i, from);
+        direction.set(i, toward.normalized());
+        distance[i] = length;
+    }
+    ShadowRays rays() const {
+        return {.origin = Lanes(origin),
+                .direction = Lanes(direction),
+                .distance = distance.data(),
+                .steepness = steepness.data()};
+    }
+};
+
 Rays one_ray(const Vec3& origin, const Vec3& direction) {
     Rays rays(1);
     rays.count = 1;
@@ -173,15 +192,12 @@ TEST_CASE("shadow rays, are blocked only between the margins of both ends") {
     const auto h = float(height);
     test::add_quad(scene, {-1, h, -1}, {1, h, -1}, {1, h, 1}, {-1, h, 1});
     const Facets facets(scene);
-    ShadowRays rays(1);
-    rays.count = 1;
-    rays.origin.set(0, {0.1, 0, 0.2});
-    rays.direction.set(0, {0, 1, 0});
-    rays.distance[0] = 5;
+    Shadows shadows(1);
+    shadows.set(0, {0.1, 0, 0.2}, {0, 1, 0}, 5);
     for (const bool grazing : {false, true}) {  // both ways of asking
-        rays.grazing[0] = grazing;
+        shadows.steepness[0] = grazing ? 0 : 1;
         double visible = 1;
-        facets.block(rays, first_ray, {&visible, 1});
+        facets.block(shadows.rays(), first_ray, {&visible, 1});
         CHECK((visible == 0) == (height > 1e-3 && height < 5 - 1e-3));
     }
 }
@@ -200,14 +216,11 @@ TEST_CASE("shadow rays, at a grazing angle do not find their own facet") {
         const Vec3 up = plane.normal.y > 0 ? plane.normal : -plane.normal;
         Vec3 along = random.vector(1);
         along = (along - up * along.dot(up)).normalized();
-        ShadowRays rays(1);
-        rays.count = 1;
-        rays.origin.set(0, point);
-        rays.direction.set(0, (along + up * 1e-4).normalized());
-        rays.distance[0] = 0.5;
-        rays.grazing[0] = 1;
+        Shadows shadows(1);
+        shadows.set(0, point, along + up * 1e-4, 0.5);
+        shadows.steepness[0] = 1e-4;
         double visible = 1;
-        facets.block(rays, first_ray, {&visible, 1});
+        facets.block(shadows.rays(), first_ray, {&visible, 1});
         REQUIRE(visible == 1);
     }
 }
@@ -221,18 +234,15 @@ TEST_CASE("shadow rays, end in scenes with instances") {
     scene.instances.push_back(second);
     const Facets facets(scene);
     constexpr std::size_t count = 1024;
-    ShadowRays rays(count);
-    rays.count = count;
+    Shadows shadows(count);
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3 from = random.vector(12), to = Vec3(0, 20, 0) - from;
-        rays.origin.set(i, from);
-        rays.direction.set(i, to.normalized());
-        rays.distance[i] = to.length();
+        shadows.set(i, from, to, to.length());
     }
     std::vector<Index> asked(count);
     std::iota(asked.begin(), asked.end(), Index(0));
     std::vector<double> visible(count, 1);
-    facets.block(rays, asked, visible);
+    facets.block(shadows.rays(), asked, visible);
     const auto blocked = std::count(visible.begin(), visible.end(), 0);
     CHECK(blocked > 20);
     CHECK(blocked < 1000);

@@ -1,0 +1,55 @@
+// The dense loops of the light that reaches surfaces: one source, a block of neighbouring points.
+#pragma once
+
+#include "blockers.h"
+#include "surface.h"
+
+namespace penumbra {
+
+/// Neighbouring surface points, [first, last) of Surfaces.
+struct Block {
+    std::size_t first = 0, last = 0;
+    bool shines = false;  ///< some of them have highlights
+};
+
+/// What is known of surface points and one source, one entry a point.
+struct Arrival {
+    Vectors toward;                        ///< unit, to the source
+    std::vector<double> distance, cosine;  ///< to the source; of the angle of incidence
+    std::vector<double> share;             ///< of the source's light: f_a, spot, shadow
+    std::vector<double> mirrored;          ///< cosine of the mirrored eye ray to the source
+    std::vector<double> steepness;         ///< sine of the angle to the facet, no less than 0
+    Vectors filter;  ///< what translucent surfaces leave of the light, in scenes with such
+
+    explicit Arrival(std::size_t capacity = 0);
+};
+
+/// Sets toward, distance, cosine and share (1 where the surface faces the source, else 0).
+void aim(const PreparedSource& source, const Surfaces& surfaces, const Block& block, Arrival& out);
+
+/// Multiplies the share by what distance and cone leave, and makes what is too weak nothing.
+void weigh(const PreparedSource& source, const Block& block, Arrival& out);
+
+/// Sets the steepness of the rays to the source.
+void find_steepness(const Surfaces& surfaces, const Block& block, Arrival& out);
+
+/// Sets the cosine of the mirrored eye ray.
+void find_mirrored(const Surfaces& surfaces, const Block& block, Arrival& out);
+
+/// Adds the diffuse light of a source to radiance.
+void add_diffuse(const Vec3& color, const Surfaces& surfaces, const Block& block,
+                 const Arrival& arrival, Vectors& radiance);
+
+/// The same with Arrival::filter.
+void add_filtered_diffuse(const Vec3& color, const Surfaces& surfaces, const Block& block,
+                          const Arrival& arrival, Vectors& radiance);
+
+/// aim() and add_diffuse() of all sources of a light, for matte points that nothing can shade and
+/// sources that are plain(): nothing is stored between the steps.
+void add_open_matte(const SourceGroup& light, const Surfaces& surfaces, const Block& block,
+                    Vectors& radiance);
+
+/// Is it made of point sources that neither fade nor are too weak to count?
+bool plain(const SourceGroup& light);
+
+}  // namespace penumbra
