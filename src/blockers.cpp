@@ -1,7 +1,6 @@
 #include "blockers.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace penumbra {
 
@@ -35,21 +34,12 @@ std::vector<Bounds> runs_of(const Mesh& mesh, std::size_t run) {
     return boxes;
 }
 
-// The range of n . p over a box.
-std::pair<double, double> extent_along(const Bounds& box, const Vec3& n) {
-    const Vec3 center = box.center(), half = (box.max - box.min) * 0.5;
-    const double middle = n.dot(center);
-    const double reach = std::abs(n.x) * half.x + std::abs(n.y) * half.y + std::abs(n.z) * half.z;
-    return {middle - reach, middle + reach};
-}
-
-// Do all segments between the boxes stay on one side of the plane (or start on it)?
-bool plane_between(const PreparedPlane& plane, const Bounds& from, const Bounds& to) {
-    const auto [low, high] = extent_along(from, plane.frame.normal);
-    const auto [source_low, source_high] = extent_along(to, plane.frame.normal);
+// Do segments between points and sources on those sides of the plane, or some of them, cross it?
+// Points may lie on it.
+bool plane_between(const PreparedPlane& plane, const Extent& points, const Extent& sources) {
     constexpr double on_it = 1e-9;
-    const bool above = low >= plane.distance - on_it && source_low > plane.distance;
-    const bool below = high <= plane.distance + on_it && source_high < plane.distance;
+    const bool above = points.low >= plane.distance - on_it && sources.low > plane.distance;
+    const bool below = points.high <= plane.distance + on_it && sources.high < plane.distance;
     return !above && !below;
 }
 
@@ -76,44 +66,63 @@ BoxTree boxes_of_spheres(const Scene& scene) {
     return make_box_tree(std::move(items));
 }
 
-void Blockers::find_group(const World& world, const Bounds& box, const Bounds& light, bool facets) {
+void PointGroups::clear() {
+    all = {};
+    boxes.clear();
+    along.clear();
+}
+
+void PointGroups::add(const World& world, const Vectors& positions, const IndexRange& range) {
+    boxes.push_back(box_around(positions, range));
+    all.extend(boxes.back().min);
+    all.extend(boxes.back().max);
+    const Lanes p(positions);
+    scratch_.resize(range.last - range.first);
+    for (const PreparedPlane& plane : world.planes) {
+        const Vec3& n = plane.frame.normal;
+        for (std::size_t i = range.first; i < range.last; ++i)
+            scratch_[i - range.first] = n.x * p.x[i] + n.y * p.y[i] + n.z * p.z[i];
+        along.push_back(extent_of(scratch_.data(), {0, scratch_.size()}));
+    }
+}
+
+void Blockers::find_group(const World& world, const PointGroups& points, const SourceGroup& light,
+                          bool facets) {
+    const std::size_t index = groups.size();
     BlockedBy& group = groups.emplace_back();
     group.first_shape = shapes.size();
-    const Shaft shaft = make_shaft(box, light);
-    const auto in_shaft = [&](const Bounds& other) { return touches(shaft, other); };
     const auto add = [&](Index object) {
         group.any = true;
         if (world.finish_of(object).opaque) shapes.push_back(object);
     };
-    for (const Index sphere : spheres_)
-        if (in_shaft(box_of(world.sphere(sphere)))) add(sphere);
-    for (const Index plane : planes_)
-        if (plane_between(world.plane(plane), box, light)) add(plane);
+    for (std::size_t k = 0; k < world.planes.size(); ++k)
+        if (plane_between(world.planes[k], points.along[index * world.planes.size() + k],
+                          light.along[k]))
+            add(world.first_plane() + Index(k));
+    if (facets || !spheres_.empty()) {
+        const Shaft shaft = make_shaft(points.boxes[index], light.box);
+        const auto in_shaft = [&](const Bounds& box) { return touches(shaft, box); };
+        for (const Index sphere : spheres_)
+            if (in_shaft(box_of(world.sphere(sphere)))) add(sphere);
+        group.facets =
+            facets && visit_boxes(world.facet_boxes, in_shaft, [](Index) { return true; });
+    }
     group.last_shape = shapes.size();
-    group.facets = facets && visit_boxes(world.facet_boxes, in_shaft, [](Index) { return true; });
     group.any |= group.facets;
 }
 
-bool Blockers::find(const World& world, const Bounds& all, std::span<const Bounds> boxes,
-                    const Bounds& light) {
+void Blockers::find(const World& world, const PointGroups& points, const SourceGroup& light) {
     groups.clear();
     shapes.clear();
     spheres_.clear();
-    planes_.clear();
-    const Shaft shaft = make_shaft(all, light);
+    const Shaft shaft = make_shaft(points.all, light.box);
     const auto in_shaft = [&](const Bounds& box) { return touches(shaft, box); };
     visit_boxes(world.sphere_boxes, in_shaft, [&](Index sphere) {
         spheres_.push_back(sphere);
         return false;
     });
-    for (std::size_t i = 0; i < world.planes.size(); ++i)
-        if (plane_between(world.planes[i], all, light))
-            planes_.push_back(world.first_plane() + Index(i));
     const bool facets = visit_boxes(world.facet_boxes, in_shaft, [](Index) { return true; });
-    if (!facets && spheres_.empty() && planes_.empty()) return false;
-    for (const Bounds& box : boxes) find_group(world, box, light, facets);
-    return std::any_of(groups.begin(), groups.end(),
-                       [](const BlockedBy& group) { return group.any; });
+    for (std::size_t i = 0; i < points.boxes.size(); ++i) find_group(world, points, light, facets);
 }
 
 }  // namespace penumbra

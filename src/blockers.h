@@ -4,7 +4,6 @@
 #include "shaft.h"
 #include "world.h"
 
-#include <span>
 #include <vector>
 
 namespace penumbra {
@@ -14,6 +13,19 @@ BoxTree boxes_of_facets(const Scene& scene);
 
 /// Boxes around spheres; the items are objects.
 BoxTree boxes_of_spheres(const Scene& scene);
+
+/// Groups of surface points.
+struct PointGroups {
+    Bounds all = {};                 ///< around all of them
+    std::vector<Bounds> boxes = {};  ///< around each group
+    std::vector<Extent> along = {};  ///< of n . p, for each group and each plane of the world
+
+    void clear();
+    void add(const World& world, const Vectors& positions, const IndexRange& range);
+
+  private:
+    std::vector<double> scratch_ = {};
+};
 
 /// What may stand between one group of points and a light; the shapes are
 /// [first_shape, last_shape) of Blockers::shapes.
@@ -28,15 +40,13 @@ struct Blockers {
     std::vector<BlockedBy> groups = {};
     std::vector<Index> shapes = {};  ///< objects
 
-    /// Finds what may stand between the points in each of `boxes`, all of them in `all`, and a
-    /// light whose sources lie in `light`. Returns whether anything may anywhere; groups are set
-    /// only then.
-    bool find(const World& world, const Bounds& all, std::span<const Bounds> boxes,
-              const Bounds& light);
+    /// Finds what may stand between each group of points and a light.
+    void find(const World& world, const PointGroups& points, const SourceGroup& light);
 
   private:
-    std::vector<Index> spheres_ = {}, planes_ = {};  // that may for all of the points
-    void find_group(const World& world, const Bounds& box, const Bounds& light, bool facets);
+    std::vector<Index> spheres_ = {};  // that may for any of the points
+    void find_group(const World& world, const PointGroups& points, const SourceGroup& light,
+                    bool facets);
 };
 
 }  // namespace penumbra

@@ -145,10 +145,10 @@ void add_shaded_blocks(const World& world, const PreparedSource& source, const S
 
 void add_light(const World& world, const SourceGroup& light, const Surfaces& surfaces,
                LightWork& work, Vectors& radiance) {
-    const bool shaded = work.blockers.find(world, work.all, work.boxes, light.box);
+    work.blockers.find(world, work.points, light);
     work.shaded.clear();
     for (std::size_t index = 0; index < work.blocks.size(); ++index) {
-        if (shaded && work.blockers.groups[index].any)
+        if (work.blockers.groups[index].any)
             work.shaded.push_back(index);
         else
             add_open_block(light, surfaces, work.blocks[index], work.arrival, radiance);
@@ -158,26 +158,10 @@ void add_light(const World& world, const SourceGroup& light, const Surfaces& sur
         add_shaded_blocks(world, source, surfaces, work, radiance);
 }
 
-Bounds box_around(const Surfaces& surfaces, const Block& block) {
-    Bounds box;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double* values = surfaces.position.axis[axis].data();
-        double low = values[block.first], high = low;
-        for (std::size_t i = block.first + 1; i < block.last; ++i) {
-            low = std::min(low, values[i]);
-            high = std::max(high, values[i]);
-        }
-        box.min[int(axis)] = low;
-        box.max[int(axis)] = high;
-    }
-    return box;
-}
-
 // What is the same for all lights.
-void find_blocks(const Surfaces& surfaces, LightWork& work) {
+void find_blocks(const World& world, const Surfaces& surfaces, LightWork& work) {
     work.blocks.clear();
-    work.boxes.clear();
-    work.all = {};
+    work.points.clear();
     for (std::size_t first = 0; first < surfaces.count; first += block_size) {
         Block block = {.first = first, .last = std::min(first + block_size, surfaces.count)};
         for (std::size_t i = block.first; i < block.last; ++i) {
@@ -185,11 +169,8 @@ void find_blocks(const Surfaces& surfaces, LightWork& work) {
             block.shines |= shines;
             work.receives[i] = shines || surfaces.diffuse[i] > 0;
         }
-        const Bounds box = box_around(surfaces, block);
-        work.all.extend(box.min);
-        work.all.extend(box.max);
+        work.points.add(world, surfaces.position, {block.first, block.last});
         work.blocks.push_back(block);
-        work.boxes.push_back(box);
     }
 }
 
@@ -208,7 +189,7 @@ void add_direct_light(const World& world, const Surfaces& surfaces, LightWork& w
     for (std::size_t c = 0; c < 3; ++c)
         for (std::size_t i = 0; i < surfaces.count; ++i)
             radiance.axis[c][i] += surfaces.own.axis[c][i];
-    find_blocks(surfaces, work);
+    find_blocks(world, surfaces, work);
     for (const SourceGroup& light : world.lights) add_light(world, light, surfaces, work, radiance);
 }
 

@@ -9,8 +9,7 @@ namespace penumbra {
 struct LightWork {
     Arrival arrival;
     std::vector<Block> blocks;
-    std::vector<Bounds> boxes;            ///< around the blocks
-    Bounds all;                           ///< around all points
+    PointGroups points;                   ///< the blocks
     std::vector<unsigned char> receives;  ///< whether a point could show light from a source
     Blockers blockers;                    ///< between the blocks and one light
     std::vector<std::size_t> shaded;      ///< blocks between which and the light anything may be

@@ -1,7 +1,7 @@
 // Rays and hits in arrays: the tracer works on many rays at once.
 #pragma once
 
-#include "penumbra/math.h"
+#include "penumbra/scene.h"
 
 #include <algorithm>
 #include <array>
@@ -53,6 +53,21 @@ struct Lanes {
         : x(v.axis[0].data() + first), y(v.axis[1].data() + first), z(v.axis[2].data() + first) {}
 };
 
+/// [first, last) of some arrays.
+struct IndexRange {
+    std::size_t first = 0, last = 0;
+};
+
+struct Extent {
+    double low = 0, high = 0;
+};
+
+/// The least and the greatest of values[range]. Precondition: there are some, and no NaN.
+Extent extent_of(const double* values, const IndexRange& range);
+
+/// The box around vectors[range].
+Bounds box_around(const Vectors& vectors, const IndexRange& range);
+
 /// Rays of one generation; the first `count` entries of each array are in use.
 struct Rays {
     std::size_t count = 0;
@@ -96,11 +111,6 @@ struct ShadowRays {
     /// facet again.
     const double* steepness = nullptr;
     const Index* object = nullptr;  ///< that the ray starts on
-};
-
-/// [first, last) of some arrays.
-struct IndexRange {
-    std::size_t first = 0, last = 0;
 };
 
 }  // namespace penumbra

@@ -109,12 +109,6 @@ void block_by_plane(const PreparedPlane& plane, Index self, const ShadowRays& ra
 
 // ---- groups of rays ----------------------------------------------------------------------------
 
-Bounds range_of(const Vectors& vectors, std::size_t first, std::size_t last) {
-    Bounds box;
-    for (std::size_t i = first; i < last; ++i) box.extend(vectors[i]);
-    return box;
-}
-
 // A ray by itself, up to a distance.
 struct Segment {
     Vec3 origin, inverse;  // of the direction
@@ -166,8 +160,8 @@ void nearest_of_many(const World& world, const Rays& rays, Hits& hits,
                      std::vector<Index>& candidates) {
     for (std::size_t first = 0; first < rays.count; first += block_size) {
         const std::size_t last = std::min(first + block_size, rays.count);
-        const Beam beam = {.origins = range_of(rays.origin, first, last),
-                           .directions = range_of(rays.direction, first, last)};
+        const Beam beam = {.origins = box_around(rays.origin, {first, last}),
+                           .directions = box_around(rays.direction, {first, last})};
         candidates.clear();
         const bool too_many = visit_boxes(
             world.sphere_boxes, [&](const Bounds& box) { return touches(beam, box); },

@@ -85,9 +85,11 @@ Geometry on_facet(const World& world, const Hit& hit, const Vec3& point) {
     return g;
 }
 
-Geometry on_sphere(const Sphere& sphere, const Vec3& point) {
+Geometry on_sphere(const Sphere& sphere, const Vec3& point, bool textured) {
     const Vec3 normal = (point - sphere.center) * (1 / sphere.radius);
-    return {.normal = normal, .facet_normal = normal, .texcoord = sphere_texcoord(normal)};
+    return {.normal = normal,
+            .facet_normal = normal,
+            .texcoord = textured ? sphere_texcoord(normal) : Vec2(0)};
 }
 
 Geometry on_plane(const PlaneFrame& frame, const Vec3& point) {
@@ -105,9 +107,8 @@ bool odd_cell(const Checker& checker, const Vec3& point) {
 
 Geometry geometry_at(const World& world, const Hit& hit, const Vec3& point) {
     if (hit.object < world.first_sphere()) return on_facet(world, hit, point);
-    if (hit.object >= world.first_plane())
-        return on_plane(world.planes[hit.object - world.first_plane()].frame, point);
-    return on_sphere(world.scene.spheres[hit.object - world.first_sphere()], point);
+    if (hit.object >= world.first_plane()) return on_plane(world.plane(hit.object).frame, point);
+    return on_sphere(world.sphere(hit.object), point, world.finish_of(hit.object).textured);
 }
 
 // The image at the mesh's texture coordinates `uv`.

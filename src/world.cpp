@@ -80,6 +80,15 @@ World::World(const Scene& given)
         const PlaneFrame frame = plane_frame(plane);
         planes.push_back({frame, frame.normal.dot(plane.point)});
     }
+    for (SourceGroup& light : lights)
+        for (const PreparedPlane& plane : planes) {
+            Extent& extent = light.along.emplace_back(Extent{no_hit, -no_hit});
+            for (const PreparedSource& source : light.sources) {
+                const double along = plane.frame.normal.dot(source.position);
+                extent.low = std::min(extent.low, along);
+                extent.high = std::max(extent.high, along);
+            }
+        }
     const Index objects = first_plane() + Index(planes.size());
     for (Index object = first_sphere(); object < objects; ++object)
         if (!finish_of(object).opaque) translucent_shapes.push_back(object);

@@ -3,6 +3,7 @@
 
 #include "box_tree.h"
 #include "facets.h"
+#include "rays.h"
 #include "sampler.h"
 
 #include "penumbra/scene.h"
@@ -41,7 +42,8 @@ struct PreparedSource {
 /// The virtual sources of one Light.
 struct SourceGroup {
     std::vector<PreparedSource> sources = {};
-    Bounds box = {};  ///< of their positions
+    Bounds box = {};                 ///< of their positions
+    std::vector<Extent> along = {};  ///< of n . position, for each plane
 };
 
 /// A point with normal . p = distance lies on the plane.
