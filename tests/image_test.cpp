@@ -1,4 +1,5 @@
 #include "file.h"
+#include "jpeg_codec.h"
 #include "support.h"
 
 #include "penumbra/image.h"
@@ -218,6 +219,29 @@ TEST_CASE("a picture that cannot be decoded is named with the reason") {
     CHECK(message(png({60000, 60000, 8, 0, {}, {}})) ==
           "wood.png: cannot be read as an image (it has 60000 x 60000 pixels, more than "
           "is supported)");
+}
+
+TEST_CASE("a JPEG file has the samples that OpenImageIO finds in it") {
+    const test::TempDir folder;
+    save_image(folder / "a.jpg", gradient());
+    Raster grey = {.width = 3, .height = 2, .channels = 1};
+    for (const int sample : {0, 50, 100, 150, 200, 250}) grey.data.push_back(std::byte(sample));
+    const Encoded encoded = image_module().encode(grey, ".jpg", true);
+    REQUIRE(encoded.problem.empty());
+    for (const Bytes& file : {read_bytes(folder / "a.jpg"), encoded.file}) {
+        REQUIRE(is_jpeg(file));
+        const Decoded ours = decode_jpeg(file);
+        const Decoded theirs = image_module().decode(file, ".jpg");
+        REQUIRE(ours.problem.empty());
+        CHECK(ours.raster.width == theirs.raster.width);
+        CHECK(ours.raster.channels == theirs.raster.channels);
+        CHECK(ours.raster.data == theirs.raster.data);
+    }
+    Bytes cut = read_bytes(folder / "a.jpg");
+    cut.resize(cut.size() / 2);
+    CHECK(decode_jpeg(cut).problem == "Premature end of JPEG file");
+    cut.resize(20);
+    CHECK_FALSE(decode_jpeg(cut).problem.empty());
 }
 
 TEST_CASE("every cut of a file is either decoded or refused") {
