@@ -102,8 +102,12 @@ void Blockers::find_group(const World& world, const PointGroups& points, const S
     if (facets || !spheres_.empty()) {
         const Shaft shaft = make_shaft(points.boxes[index], light.box);
         const auto in_shaft = [&](const Bounds& box) { return touches(shaft, box); };
-        for (const Index sphere : spheres_)
-            if (in_shaft(box_of(world.sphere(sphere)))) add(sphere);
+        const Capsule capsule = make_capsule(points.boxes[index], light.box);
+        for (const Index object : spheres_) {
+            const Sphere& sphere = world.sphere(object);
+            if (in_shaft(box_of(sphere)) && touches(capsule, sphere.center, sphere.radius))
+                add(object);
+        }
         group.facets =
             facets && visit_boxes(world.facet_boxes, in_shaft, [](Index) { return true; });
     }

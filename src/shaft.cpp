@@ -6,6 +6,12 @@
 
 namespace penumbra {
 
+namespace {
+
+constexpr double no_limit = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
 // In each of the three projections the hull of two rectangles has slanted edges that join corners
 // of the same kind (such as both lower left ones), where the edge's normal points that way.
 Shaft make_shaft(const Bounds& from, const Bounds& to) {
@@ -45,6 +51,32 @@ bool touches(const Shaft& shaft, const Bounds& box) {
         if (side.weight_a * a + side.weight_b * b > side.limit) return false;
     }
     return true;
+}
+
+Capsule make_capsule(const Bounds& from, const Bounds& to) {
+    const double radius = from.radius(), growth = to.radius() - radius;
+    const Vec3 way = to.center() - from.center();
+    Capsule capsule = {.start = from.center(), .length = way.length(), .radius = radius};
+    // One ball within the other: all of it counts.
+    if (capsule.length <= std::abs(growth)) return {.start = from.center(), .radius = no_limit};
+    capsule.axis = way / capsule.length;
+    capsule.sine = growth / capsule.length;
+    capsule.cosine = std::sqrt(1 - capsule.sine * capsule.sine);
+    return capsule;
+}
+
+// The hull is the union of the balls between the two; the nearest of them lies where the line to
+// the point leaves the axis at the angle of the sides.
+bool touches(const Capsule& capsule, const Vec3& center, double radius) {
+    if (capsule.radius == no_limit) return true;
+    const Vec3 offset = center - capsule.start;
+    const double along = offset.dot(capsule.axis);
+    const double aside = std::sqrt(std::max(0.0, offset.dot(offset) - along * along));
+    const double nearest =
+        std::clamp(along + aside * capsule.sine / capsule.cosine, 0.0, capsule.length);
+    const double before = along - nearest;
+    const double distance = std::sqrt(before * before + aside * aside);
+    return distance <= capsule.radius + capsule.sine * nearest + radius + 1e-9;
 }
 
 bool touches(const Beam& beam, const Bounds& box) {

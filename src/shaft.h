@@ -26,6 +26,19 @@ Shaft make_shaft(const Bounds& from, const Bounds& to);
 /// False only when no segment from one box to the other touches `box`.
 bool touches(const Shaft& shaft, const Bounds& box);
 
+/// The convex hull of the balls around two boxes, which holds their shaft.
+struct Capsule {
+    Vec3 start = {}, axis = {};   ///< centre of the first ball; unit, to that of the second
+    double length = 0;            ///< from one to the other
+    double radius = 0;            ///< of the first ball
+    double sine = 0, cosine = 1;  ///< of the angle at which the sides open
+};
+
+Capsule make_capsule(const Bounds& from, const Bounds& to);
+
+/// False only when no segment from one box to the other touches the ball.
+bool touches(const Capsule& capsule, const Vec3& center, double radius);
+
 /// Rays whose origins lie in one box and whose directions in another.
 struct Beam {
     Bounds origins, directions;

@@ -10,6 +10,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <mutex>
@@ -42,7 +43,8 @@ struct Workspace {
     Hits hits;
     std::vector<Index> shapes;  // scratch
     Surfaces surfaces;
-    std::vector<std::size_t> ray_of;  // surface point -> ray
+    std::vector<std::uint64_t> order;  // of the rays that hit: a key and the ray
+    std::vector<std::size_t> ray_of;   // surface point -> ray
     Vectors radiance;
     LightWork light;
     std::vector<Vec3> pixels;  // of the tile
@@ -111,6 +113,44 @@ Vec3 sky_light(const World& world, const Vec3& direction) {
            world.scene.sky->gain;
 }
 
+// Three bits of each of the lowest ten bits of a number: 0, 3, 6, ...
+std::uint32_t spread(std::uint32_t x) {
+    x = (x | (x << 16U)) & 0x030000FFU;
+    x = (x | (x << 8U)) & 0x0300F00FU;
+    x = (x | (x << 4U)) & 0x030C30C3U;
+    return (x | (x << 2U)) & 0x09249249U;
+}
+
+// The place of a point on a Z-order curve through the box.
+std::uint32_t place_on_curve(const Vec3& point, const Bounds& box) {
+    std::uint32_t place = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double share = (point[axis] - box.min[axis]) / (box.max[axis] - box.min[axis]);
+        place |= spread(std::uint32_t(std::clamp(share, 0.0, 1.0) * 1023)) << unsigned(axis);
+    }
+    return place;
+}
+
+// Lists the rays that hit something. What mirrors scatter is brought together again, so that blocks
+// of surface points stay small.
+void order_hits(const World& world, bool coherent, Workspace& work) {
+    const Generation& rays = work.current;
+    work.order.clear();
+    for (std::size_t i = 0; i < rays.rays.count; ++i) {
+        if (work.hits.object[i] == no_index) {
+            work.pixels[rays.paths[i].pixel] +=
+                rays.paths[i].weight * sky_light(world, rays.rays.direction[i]);
+            continue;
+        }
+        std::uint64_t key = 0;
+        if (!coherent)
+            key = place_on_curve(rays.rays.origin[i] + rays.rays.direction[i] * work.hits.t[i],
+                                 world.surroundings);
+        work.order.push_back(key << 32U | i);
+    }
+    if (!coherent) std::sort(work.order.begin(), work.order.end());
+}
+
 void find_surfaces(const World& world, Workspace& work) {
     const Generation& rays = work.current;
     if (work.surfaces.finish.size() < rays.rays.count) {
@@ -119,12 +159,8 @@ void find_surfaces(const World& world, Workspace& work) {
     }
     work.surfaces.count = 0;
     work.ray_of.clear();
-    for (std::size_t i = 0; i < rays.rays.count; ++i) {
-        if (work.hits.object[i] == no_index) {
-            work.pixels[rays.paths[i].pixel] +=
-                rays.paths[i].weight * sky_light(world, rays.rays.direction[i]);
-            continue;
-        }
+    for (const std::uint64_t entry : work.order) {
+        const std::size_t i = entry & 0xFFFFFFFFU;
         work.surfaces.inside[work.surfaces.count] = &rays.paths[i].inside;
         find_surface(world, rays.rays.origin[i], rays.rays.direction[i], work.hits[i],
                      work.surfaces, work.surfaces.count++);
@@ -138,6 +174,7 @@ void trace_generations(const Job& job, Workspace& work) {
     bool coherent = true;
     while (work.current.rays.count > 0) {
         find_hits(job.world, coherent, work);
+        order_hits(job.world, coherent, work);
         find_surfaces(job.world, work);
         work.radiance.clear(work.surfaces.count);
         add_direct_light(job.world, work.surfaces, work.light, work.radiance);

@@ -58,6 +58,18 @@ PreparedSource prepare(const Source& s) {
     return p;
 }
 
+Bounds surroundings_of(const World& world) {
+    Bounds box;
+    for (const BoxTree* tree : {&world.facet_boxes, &world.sphere_boxes}) {
+        if (tree->nodes.empty()) continue;
+        box.extend(tree->nodes[0].box.min);
+        box.extend(tree->nodes[0].box.max);
+    }
+    if (box.empty()) return {.min = Vec3(-1), .max = Vec3(1)};
+    const Vec3 center = box.center(), size = box.max - box.min + Vec3(1e-3);  // not flat
+    return {.min = center - size, .max = center + size};
+}
+
 }  // namespace
 
 World::World(const Scene& given)
@@ -89,6 +101,7 @@ World::World(const Scene& given)
                 extent.high = std::max(extent.high, along);
             }
         }
+    surroundings = surroundings_of(*this);
     const Index objects = first_plane() + Index(planes.size());
     for (Index object = first_sphere(); object < objects; ++object)
         if (!finish_of(object).opaque) translucent_shapes.push_back(object);

@@ -57,6 +57,7 @@ struct World {
     Facets facets;
     BoxTree facet_boxes;                 ///< around runs of facets
     BoxTree sphere_boxes;                ///< items are objects
+    Bounds surroundings;                 ///< of facets and spheres: their box, twice as large
     std::vector<Finish> finishes = {};   ///< by material
     std::vector<Sampler> samplers = {};  ///< by texture
     std::vector<SourceGroup> lights = {};
