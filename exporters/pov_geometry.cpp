@@ -2,7 +2,9 @@
 #include "pov_plan.h"
 #include "sdl.h"
 
-#include <cmath>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
 
 namespace penumbra::pov {
 
@@ -10,36 +12,37 @@ namespace {
 
 constexpr std::size_t line_length = 96;
 
-// Comma-separated items, as many to a line as fit.
-class List {
-  public:
-    List(std::string& out, const char* keyword, std::size_t count) : out_(out) {
-        out_ += "  ";
-        out_ += keyword;
-        out_ += " { ";
-        sdl::append(out_, count);
-        line_start_ = out_.size() - line_length;  // begins a new line
-    }
-    ~List() { out_ += "\n  }\n"; }
-    List(const List&) = delete;
-    List& operator=(const List&) = delete;
-
-    /// Where the next item is appended.
-    std::string& next() {
-        out_ += ',';
-        if (out_.size() - line_start_ >= line_length) {
-            line_start_ = out_.size() + 1;
-            out_ += "\n    ";
-        } else {
-            out_ += ' ';
+// Comma-separated items, as many to a line as fit; append_item(text, i) writes one. Long lists are
+// written in parts, by all processors.
+template <class Append>
+void append_list(std::string& out, const char* keyword, std::size_t count, Append append_item) {
+    constexpr std::size_t part = 1 << 14;
+    std::vector<std::string> texts((count + part - 1) / part);
+    tbb::parallel_for(std::size_t(0), texts.size(), [&](std::size_t index) {
+        std::string& text = texts[index];
+        std::size_t line_start = 0;
+        const std::size_t first = index * part, last = std::min(first + part, count);
+        for (std::size_t i = first; i < last; ++i) {
+            text += ',';
+            if (i == first || text.size() - line_start >= line_length) {
+                line_start = text.size() + 1;
+                text += "\n    ";
+            } else {
+                text += ' ';
+            }
+            append_item(text, i);
         }
-        return out_;
+    });
+    out += "  ";
+    out += keyword;
+    out += " { ";
+    sdl::append(out, count);
+    for (std::string& text : texts) {
+        out += text;
+        text = {};
     }
-
-  private:
-    std::string& out_;
-    std::size_t line_start_ = 0;
-};
+    out += "\n  }\n";
+}
 
 void append_vector(std::string& out, const Vec3f& v) {
     out += '<';
@@ -52,26 +55,25 @@ void append_vector(std::string& out, const Vec3f& v) {
 }
 
 void append_vectors(std::string& out, const char* keyword, const std::vector<Vec3f>& vectors) {
-    List list(out, keyword, vectors.size());
-    for (const Vec3f& v : vectors) append_vector(list.next(), v);
+    append_list(out, keyword, vectors.size(),
+                [&](std::string& text, std::size_t i) { append_vector(text, vectors[i]); });
 }
 
 // POV-Ray replaces a normal of length zero by x, and warns.
 void append_normals(std::string& out, const std::vector<Vec3f>& normals) {
-    List list(out, "normal_vectors", normals.size());
-    for (const Vec3f& n : normals) append_vector(list.next(), n == Vec3f(0) ? Vec3f(1, 0, 0) : n);
+    append_list(out, "normal_vectors", normals.size(), [&](std::string& text, std::size_t i) {
+        append_vector(text, normals[i] == Vec3f(0) ? Vec3f(1, 0, 0) : normals[i]);
+    });
 }
 
 void append_texcoords(std::string& out, const std::vector<Vec2f>& texcoords) {
-    List list(out, "uv_vectors", texcoords.size());
-    for (const Vec2f& t : texcoords) {
-        std::string& item = list.next();
+    append_list(out, "uv_vectors", texcoords.size(), [&](std::string& item, std::size_t i) {
         item += '<';
-        sdl::append_fixed(item, t.x);
+        sdl::append_fixed(item, texcoords[i].x);
         item += ',';
-        sdl::append_fixed(item, t.y);
+        sdl::append_fixed(item, texcoords[i].y);
         item += '>';
-    }
+    });
 }
 
 std::string tint_name(const MeshPlan& mesh, std::size_t tint) {
@@ -97,9 +99,8 @@ void declare_tints(std::string& out, const Plan& plan, const MeshPlan& mesh, con
 }
 
 void append_faces(std::string& out, const Mesh& mesh, const MeshPlan& plan) {
-    List list(out, "face_indices", mesh.triangles.size());
-    for (const auto& [a, b, c] : mesh.triangles) {
-        std::string& item = list.next();
+    append_list(out, "face_indices", mesh.triangles.size(), [&](std::string& item, std::size_t i) {
+        const auto& [a, b, c] = mesh.triangles[i];
         item += '<';
         sdl::append(item, std::size_t(a));
         item += ',';
@@ -107,7 +108,7 @@ void append_faces(std::string& out, const Mesh& mesh, const MeshPlan& plan) {
         item += ',';
         sdl::append(item, std::size_t(c));
         item += '>';
-        if (plan.tints.empty()) continue;
+        if (plan.tints.empty()) return;
         const Index first = plan.tint_of[a];
         const bool one = plan.tint_of[b] == first && plan.tint_of[c] == first;
         for (const Index corner : {a, b, c}) {
@@ -115,7 +116,7 @@ void append_faces(std::string& out, const Mesh& mesh, const MeshPlan& plan) {
             sdl::append(item, std::size_t(plan.tint_of[corner]));
             if (one) break;  // a third of the shading
         }
-    }
+    });
 }
 
 void append_mesh(std::string& out, const Plan& plan, std::size_t index) {

@@ -1,5 +1,7 @@
 #include "blockers.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 
 namespace penumbra {
@@ -24,13 +26,13 @@ Bounds box_of(const Sphere& sphere) {
 // Boxes around runs of `run` facets in the mesh's own space: neighbours in a file are mostly
 // neighbours in space.
 std::vector<Bounds> runs_of(const Mesh& mesh, std::size_t run) {
-    std::vector<Bounds> boxes;
-    for (std::size_t first = 0; first < mesh.triangles.size(); first += run) {
-        Bounds& box = boxes.emplace_back();
-        const std::size_t end = std::min(first + run, mesh.triangles.size());
-        for (std::size_t f = first; f < end; ++f)
-            for (const Index corner : mesh.triangles[f]) box.extend(Vec3(mesh.positions[corner]));
-    }
+    const std::size_t count = mesh.triangles.size();
+    std::vector<Bounds> boxes((count + run - 1) / run);
+    tbb::parallel_for(std::size_t(0), boxes.size(), [&](std::size_t i) {
+        for (std::size_t f = i * run; f < std::min((i + 1) * run, count); ++f)
+            for (const Index corner : mesh.triangles[f])
+                boxes[i].extend(Vec3(mesh.positions[corner]));
+    });
     return boxes;
 }
 

@@ -1,5 +1,7 @@
 #include "box_tree.h"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <span>
 
@@ -7,10 +9,11 @@ namespace penumbra {
 
 namespace {
 
-// Splits the items at the median of the longest axis of their boxes' centres.
-void build(BoxTree& tree, std::span<BoxedItem> items) {
-    const std::size_t self = tree.nodes.size();
-    tree.nodes.emplace_back();
+constexpr std::size_t worth_a_task = 4096;  // items
+
+// Makes node `self` and all below it: splits the items at the median of the longest axis of their
+// boxes' centres. A tree of n items has 2 n - 1 nodes.
+void build(BoxTree& tree, std::size_t self, std::span<BoxedItem> items) {
     Bounds all, centers;
     for (const BoxedItem& item : items) {
         all.extend(item.box.min);
@@ -30,9 +33,13 @@ void build(BoxTree& tree, std::span<BoxedItem> items) {
                          return a.box.min[axis] + a.box.max[axis] <
                                 b.box.min[axis] + b.box.max[axis];
                      });
-    build(tree, items.first(half));
-    tree.nodes[self].right = Index(tree.nodes.size());
-    build(tree, items.subspan(half));
+    const std::size_t right = self + 2 * half;
+    tree.nodes[self].right = Index(right);
+    const auto first = [&] { build(tree, self + 1, items.first(half)); };
+    const auto second = [&] { build(tree, right, items.subspan(half)); };
+    if (items.size() >= worth_a_task) return tbb::parallel_invoke(first, second);
+    first();
+    second();
 }
 
 }  // namespace
@@ -52,8 +59,9 @@ Bounds transformed(const Bounds& box, const Matrix& transform) {
 
 BoxTree make_box_tree(std::vector<BoxedItem> items) {
     BoxTree tree;
-    tree.nodes.reserve(2 * items.size());
-    if (!items.empty()) build(tree, items);
+    if (items.empty()) return tree;
+    tree.nodes.resize(2 * items.size() - 1);
+    build(tree, 0, items);
     return tree;
 }
 
