@@ -131,12 +131,12 @@ struct Planner {
     // The part of the image that the mesh looks up.
     void use_map(const ImageMap& map, const Mesh& mesh) {
         std::array<Range, 2> part;
-        const auto& t = map.transform;
         for (const auto& triangle : mesh.triangles) {
             for (const Index corner : triangle) {
                 const Vec2 uv = mesh.texcoords.empty() ? Vec2(0) : Vec2(mesh.texcoords[corner]);
-                part[0].extend(t[0] * uv.x + t[1] * uv.y + t[2]);
-                part[1].extend(t[3] * uv.x + t[4] * uv.y + t[5]);
+                const Vec2 at = map_texcoord(map, uv);
+                part[0].extend(at.x);
+                part[1].extend(at.y);
             }
         }
         use_texture(map.texture, part);

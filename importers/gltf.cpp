@@ -159,6 +159,20 @@ void Walker::place(const ShownMesh& shown, int index, const Matrix& world) {
     }
 }
 
+// Materials that others have replaced on all meshes.
+void drop_unused_materials(Scene& scene) {
+    std::vector<Index> place(scene.materials.size(), no_index);
+    for (const Mesh& mesh : scene.meshes) place[mesh.material] = 0;
+    std::vector<Material> used;
+    for (std::size_t i = 0; i < place.size(); ++i) {
+        if (place[i] == no_index) continue;
+        place[i] = Index(used.size());
+        used.push_back(std::move(scene.materials[i]));
+    }
+    scene.materials = std::move(used);
+    for (Mesh& mesh : scene.meshes) mesh.material = place[mesh.material];
+}
+
 Imported read(const std::filesystem::path& file, const ModelOptions& options) {
     Imported imported;
     const Document document = open_document(file, imported.losses);
@@ -167,6 +181,7 @@ Imported read(const std::filesystem::path& file, const ModelOptions& options) {
     reader.pose = read_pose(reader);
     Walker{reader}.walk();
     set_attenuation(imported.scene);
+    drop_unused_materials(imported.scene);
     reader.say_primitive_losses();
     if (!imported.scene.cameras.empty()) imported.scene.camera = 0;
     if (imported.scene.instances.empty() && !model.meshes.empty())

@@ -232,6 +232,17 @@ void read_alphas(const Part& part, Range range, int accessor, Mesh& mesh) {
                                              "the vertices' alpha is ignored (alphaMode MASK)");
     mesh.alphas = std::move(alphas);
     mesh.material = fading(part.reader, mesh.material);
+    const bool both_vary = std::any_of(mesh.triangles.begin(), mesh.triangles.end(),
+                                       [&](const std::array<Index, 3>& t) {
+                                           const auto differ = [&](const auto& of) {
+                                               return of[t[0]] != of[t[1]] || of[t[0]] != of[t[2]];
+                                           };
+                                           return differ(mesh.colors) && differ(mesh.alphas);
+                                       });
+    if (both_vary)
+        part.reader.lose_in_primitive(
+            part.pointer + "/attributes/COLOR_0",
+            "between vertices their colours are mixed by their alpha too: approximate");
 }
 
 void read_colors(const Part& part, Range range, Mesh& mesh) {

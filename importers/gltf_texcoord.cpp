@@ -1,6 +1,7 @@
 // Images on a second set of texture coordinates. POV-Ray's meshes have one set; where the second is
 // an affine function of the first, facet by facet, the image is laid by the first.
 #include "gltf_mesh.h"
+#include "vertices.h"
 
 #include <fmt/format.h>
 
@@ -22,11 +23,11 @@ Corners corners_of(const std::vector<Vec2f>& texcoords, const Facet& facet) {
 }
 
 bool leads(const Lookup& t, const Corners& from, const Corners& to) {
+    const ImageMap map = {.transform = t};
     for (std::size_t i = 0; i < 3; ++i) {
-        const double u = t[0] * from[i].x + t[1] * from[i].y + t[2];
-        const double v = t[3] * from[i].x + t[4] * from[i].y + t[5];
+        const Vec2 found = map_texcoord(map, from[i]);
         // Not the negation, so that NaN does not lead anywhere.
-        if (!(std::abs(u - to[i].x) <= tolerance && std::abs(v - to[i].y) <= tolerance))
+        if (!(std::abs(found.x - to[i].x) <= tolerance && std::abs(found.y - to[i].y) <= tolerance))
             return false;
     }
     return true;
@@ -124,13 +125,6 @@ Index relaid(Reader& reader, Index original, const std::vector<OtherSet>& others
     return index;
 }
 
-template <class T>
-void pick(const std::vector<T>& from, const std::vector<Index>& chosen, std::vector<T>& to) {
-    if (from.empty()) return;
-    to.reserve(chosen.size());
-    for (const Index vertex : chosen) to.push_back(from[vertex]);
-}
-
 // Those facets of a mesh and their vertices.
 Mesh part_of(const Mesh& mesh, std::vector<Facet> facets) {
     std::vector<Index> place(mesh.positions.size(), no_index), chosen;
@@ -142,16 +136,9 @@ Mesh part_of(const Mesh& mesh, std::vector<Facet> facets) {
             }
             corner = place[corner];
         }
-    Mesh part;
-    part.name = mesh.name;
-    part.material = mesh.material;
+    Mesh part = mesh;
     part.triangles = std::move(facets);
-    pick(mesh.positions, chosen, part.positions);
-    pick(mesh.normals, chosen, part.normals);
-    pick(mesh.texcoords, chosen, part.texcoords);
-    pick(mesh.colors, chosen, part.colors);
-    pick(mesh.alphas, chosen, part.alphas);
-    pick(mesh.tangents, chosen, part.tangents);
+    choose_vertices(part, chosen);
     return part;
 }
 

@@ -1,3 +1,5 @@
+#include "vertices.h"
+
 #include "penumbra/scene.h"
 
 #include <fmt/format.h>
@@ -90,10 +92,9 @@ struct Examiner {
     void mesh(const Mesh& m) {
         const std::string who = fmt::format("mesh '{}'", m.name);
         const std::size_t count = m.positions.size();
-        const auto fits = [&](const auto& v) { return v.empty() || v.size() == count; };
-        require(fits(m.normals) && fits(m.texcoords) && fits(m.colors) && fits(m.alphas) &&
-                    fits(m.tangents),
-                who + " has per-vertex data of unequal lengths");
+        bool fits = true;
+        each_vertex_array(m, [&](const auto& v) { fits &= v.empty() || v.size() == count; });
+        require(fits, who + " has per-vertex data of unequal lengths");
         require(std::all_of(m.positions.begin(), m.positions.end(), finite_vector<Vec3f>),
                 who + " has a position that is not finite");
         require(std::all_of(m.normals.begin(), m.normals.end(), finite_vector<Vec3f>),

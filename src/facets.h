@@ -54,7 +54,6 @@ class Facets {
     /// The nearest translucent facet with distance in (nearest, farthest).
     bool translucent(const Vec3& origin, const Vec3& direction, double nearest, double farthest,
                      Hit& hit) const;
-    bool has_translucent() const { return translucent_; }
 
   private:
     struct Device;

@@ -128,11 +128,14 @@ float linear_to_srgb(float linear) {
 }
 
 Raster decode_image(std::span<const std::byte> file, const std::string& name) {
-    Decoded decoded = {.problem = "not decoded"};
-    if (is_png(file)) decoded = decode_png(file);
-    if (is_jpeg(file)) decoded = decode_jpeg(file);
-    if (!is_png(file) && !decoded.problem.empty())
-        decoded = module_for(Failure::input, name).decode(file, lower_extension(name));
+    Decoded decoded;
+    if (is_png(file)) {
+        decoded = decode_png(file);
+    } else {
+        if (is_jpeg(file)) decoded = decode_jpeg(file);
+        if (decoded.raster.data.empty())
+            decoded = module_for(Failure::input, name).decode(file, lower_extension(name));
+    }
     if (!decoded.problem.empty())
         throw Error(Failure::input, name, "cannot be read as an image (" + decoded.problem + ")");
     return std::move(decoded.raster);

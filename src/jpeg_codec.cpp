@@ -32,14 +32,13 @@ struct Reader {
 
     [[noreturn]] static void on_error(j_common_ptr info) {
         auto& reader = *static_cast<Reader*>(info->client_data);
-        errors_of(info).format_message(info, reader.message.data());
+        info->err->format_message(info, reader.message.data());
         std::longjmp(reader.escape, 1);
     }
     // libjpeg goes on with invented pixels.
     static void on_warning(j_common_ptr info, int level) {
         if (level < 0) on_error(info);
     }
-    static jpeg_error_mgr& errors_of(j_common_ptr info) { return *info->err; }
 
     void refuse(const char* why) {
         std::snprintf(message.data(), message.size(), "%s", why);

@@ -121,7 +121,7 @@ void add_from(const PreparedSource& source, const Surfaces& surfaces, const Bloc
 
 Arrival::Arrival(std::size_t capacity)
     : toward(capacity), distance(capacity), cosine(capacity), share(capacity), mirrored(capacity),
-      steepness(capacity), filter(capacity) {}
+      steepness(capacity), filter(capacity), filtered(capacity) {}
 
 void aim(const PreparedSource& source, const Surfaces& surfaces, const Block& block, Arrival& out) {
     if (source.type == Light::Type::directional)
@@ -157,38 +157,20 @@ void find_mirrored(const Surfaces& surfaces, const Block& block, Arrival& out) {
 }
 
 PENUMBRA_VECTORISED
-void add_diffuse(const Vec3& color, const Surfaces& surfaces, const Block& block,
-                 const Arrival& arrival, Vectors& radiance) {
-    const Lanes pigment(surfaces.pigment);
-    const double *diffuse = surfaces.diffuse.data(), *cosine = arrival.cosine.data(),
+void add_diffuse(const Vec3& color, const Vectors& pigments, const std::vector<double>& diffuse,
+                 const Block& block, const Arrival& arrival, Vectors& radiance) {
+    const Lanes pigment(pigments);
+    const double *scattered = diffuse.data(), *cosine = arrival.cosine.data(),
                  *share = arrival.share.data();
     double *red = radiance.axis[0].data(), *green = radiance.axis[1].data(),
            *blue = radiance.axis[2].data();
     const double r = color.x, g = color.y, b = color.z;
     PENUMBRA_INDEPENDENT
     for (std::size_t i = block.first; i < block.last; ++i) {
-        const double amount = diffuse[i] * cosine[i] * share[i];
+        const double amount = scattered[i] * cosine[i] * share[i];
         red[i] += r * (pigment.x[i] * amount);
         green[i] += g * (pigment.y[i] * amount);
         blue[i] += b * (pigment.z[i] * amount);
-    }
-}
-
-PENUMBRA_VECTORISED
-void add_filtered_diffuse(const Vec3& color, const Surfaces& surfaces, const Block& block,
-                          const Arrival& arrival, Vectors& radiance) {
-    const Lanes pigment(surfaces.pigment), filter(arrival.filter);
-    const double *diffuse = surfaces.diffuse.data(), *cosine = arrival.cosine.data(),
-                 *share = arrival.share.data();
-    double *red = radiance.axis[0].data(), *green = radiance.axis[1].data(),
-           *blue = radiance.axis[2].data();
-    const double r = color.x, g = color.y, b = color.z;
-    PENUMBRA_INDEPENDENT
-    for (std::size_t i = block.first; i < block.last; ++i) {
-        const double amount = diffuse[i] * cosine[i] * share[i];
-        red[i] += r * (pigment.x[i] * filter.x[i] * amount);
-        green[i] += g * (pigment.y[i] * filter.y[i] * amount);
-        blue[i] += b * (pigment.z[i] * filter.z[i] * amount);
     }
 }
 

@@ -19,7 +19,9 @@ struct Arrival {
     std::vector<double> share;             ///< of the source's light: f_a, spot, shadow
     std::vector<double> mirrored;          ///< cosine of the mirrored eye ray to the source
     std::vector<double> steepness;         ///< sine of the angle to the facet, no less than 0
-    Vectors filter;  ///< what translucent surfaces leave of the light, in scenes with such
+    // In scenes with translucent surfaces:
+    Vectors filter;    ///< what they leave of the light
+    Vectors filtered;  ///< that, times the pigment
 
     explicit Arrival(std::size_t capacity = 0);
 };
@@ -36,13 +38,9 @@ void find_steepness(const Surfaces& surfaces, const Block& block, Arrival& out);
 /// Sets the cosine of the mirrored eye ray.
 void find_mirrored(const Surfaces& surfaces, const Block& block, Arrival& out);
 
-/// Adds the diffuse light of a source to radiance.
-void add_diffuse(const Vec3& color, const Surfaces& surfaces, const Block& block,
-                 const Arrival& arrival, Vectors& radiance);
-
-/// The same with Arrival::filter.
-void add_filtered_diffuse(const Vec3& color, const Surfaces& surfaces, const Block& block,
-                          const Arrival& arrival, Vectors& radiance);
+/// Adds the light of `color` that points with these pigments scatter to radiance.
+void add_diffuse(const Vec3& color, const Vectors& pigments, const std::vector<double>& diffuse,
+                 const Block& block, const Arrival& arrival, Vectors& radiance);
 
 /// aim() and add_diffuse() of all sources of a light, for matte points that nothing can shade and
 /// sources that are plain(): nothing is stored between the steps.

@@ -42,13 +42,12 @@ void filter_light(const World& world, const Surfaces& surfaces, const Block& blo
                   LightWork& work) {
     Arrival& arrival = work.arrival;
     for (std::size_t i = block.first; i < block.last; ++i) {
-        arrival.filter.set(i, Vec3(1));
-        if (arrival.share[i] == 0 || work.receives[i] == 0) continue;
-        const Vec3 light = filtered(world, surfaces, i, arrival.toward[i], arrival.distance[i]);
-        if (light == Vec3(0))
-            arrival.share[i] = 0;
-        else
-            arrival.filter.set(i, light);
+        Vec3 light(1);
+        if (arrival.share[i] != 0 && work.receives[i] != 0)
+            light = filtered(world, surfaces, i, arrival.toward[i], arrival.distance[i]);
+        if (light == Vec3(0)) arrival.share[i] = 0;
+        arrival.filter.set(i, light);
+        arrival.filtered.set(i, surfaces.pigment[i] * light);
     }
 }
 
@@ -114,7 +113,7 @@ void add_open_block(const SourceGroup& light, const Surfaces& surfaces, const Bl
     for (const PreparedSource& source : light.sources) {
         aim(source, surfaces, block, arrival);
         weigh(source, block, arrival);
-        add_diffuse(source.color, surfaces, block, arrival, radiance);
+        add_diffuse(source.color, surfaces.pigment, surfaces.diffuse, block, arrival, radiance);
         if (block.shines) add_highlights(source, surfaces, block, nullptr, arrival, radiance);
     }
 }
@@ -133,12 +132,9 @@ void add_shaded_blocks(const World& world, const PreparedSource& source, const S
     for (const std::size_t index : work.shaded) {
         const Block& block = work.blocks[index];
         const Vectors* filter = world.translucent ? &arrival.filter : nullptr;
-        if (filter != nullptr) {
-            filter_light(world, surfaces, block, work);
-            add_filtered_diffuse(source.color, surfaces, block, arrival, radiance);
-        } else {
-            add_diffuse(source.color, surfaces, block, arrival, radiance);
-        }
+        if (world.translucent) filter_light(world, surfaces, block, work);
+        add_diffuse(source.color, world.translucent ? arrival.filtered : surfaces.pigment,
+                    surfaces.diffuse, block, arrival, radiance);
         if (block.shines) add_highlights(source, surfaces, block, filter, arrival, radiance);
     }
 }

@@ -1,5 +1,7 @@
 #include "normal_map.h"
 
+#include "vertices.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -23,21 +25,7 @@ Vec3 facet_normal(const Mesh& mesh, const std::array<Index, 3>& facet) {
     return normal.dot(side) < 0 ? -normal : normal;
 }
 
-template <class T>
-void pick(std::vector<T>& values, const std::vector<Index>& chosen) {
-    if (values.empty()) return;
-    std::vector<T> picked;
-    picked.reserve(chosen.size());
-    for (const Index i : chosen) picked.push_back(values[i]);
-    values = std::move(picked);
-}
-
 }  // namespace
-
-Vec2 map_texcoord(const ImageMap& map, const Vec2& uv) {
-    const auto& t = map.transform;
-    return {t[0] * uv.x + t[1] * uv.y + t[2], t[3] * uv.x + t[4] * uv.y + t[5]};
-}
 
 Vec3 perturbed_normal(const NormalMap& map, const Sampler& sampler, const TangentFrame& frame,
                       const Vec2& texcoord) {
@@ -80,11 +68,9 @@ void give_facet_normals(Mesh& mesh) {
             corner = Index(chosen.size() - 1);
         }
     }
-    pick(mesh.positions, chosen);
-    pick(mesh.texcoords, chosen);
-    pick(mesh.colors, chosen);
-    pick(mesh.alphas, chosen);
     mesh.tangents.clear();
+    mesh.normals.clear();
+    choose_vertices(mesh, chosen);
     mesh.normals = std::move(normals);
 }
 

@@ -14,9 +14,6 @@ struct TangentFrame {
     double handedness = 1;  ///< its sign is that of the bitangent
 };
 
-/// Where `map` is looked up for the mesh's texture coordinates.
-Vec2 map_texcoord(const ImageMap& map, const Vec2& texcoord);
-
 /// The unit normal of `map` at the mesh's texture coordinates; `sampler` is that of its texture.
 Vec3 perturbed_normal(const NormalMap& map, const Sampler& sampler, const TangentFrame& frame,
                       const Vec2& texcoord);

@@ -39,6 +39,22 @@ constexpr std::size_t most_candidates = 24;  // of a block of rays, before each 
 
 // ---- dense loops over arrays: the tests of cross_sphere() and cross_plane() ---------------------
 
+// Where a ray crosses a sphere whose centre lies at (x, y, z) from its start and `closest` along
+// it.
+struct SphereRoots {
+    double near, far;
+    bool crosses;
+};
+
+inline SphereRoots sphere_roots(double x, double y, double z, double closest, double radius2) {
+    const double square = x * x + y * y + z * z;
+    const double half2 = radius2 - square + closest * closest;
+    const double half = std::sqrt(half2 > 0 ? half2 : 0);
+    const bool away = (square >= radius2) & (closest < least_cosine);
+    const bool crosses = (half2 > least_cosine) & !away;
+    return {closest - half, closest + half, crosses};
+}
+
 PENUMBRA_VECTORISED
 void nearest_on_sphere(const Vec3& center, double radius2, Lanes origin, Lanes direction,
                        std::size_t count, Index object, double* __restrict t,
@@ -46,15 +62,11 @@ void nearest_on_sphere(const Vec3& center, double radius2, Lanes origin, Lanes d
     const double cx = center.x, cy = center.y, cz = center.z;
     for (std::size_t i = 0; i < count; ++i) {
         const double x = cx - origin.x[i], y = cy - origin.y[i], z = cz - origin.z[i];
-        const double square = x * x + y * y + z * z;
         const double closest = x * direction.x[i] + y * direction.y[i] + z * direction.z[i];
-        const double half2 = radius2 - square + closest * closest;
-        const double half = std::sqrt(half2 > 0 ? half2 : 0);
-        const double near = closest - half, far = closest + half;
-        const double first = near >= least_distance ? near : far;
-        const bool away = (square >= radius2) & (closest < least_cosine);
-        const bool crosses = (half2 > least_cosine) & !away & (first >= least_distance) &
-                             (first < greatest_depth) & (first < t[i]);
+        const SphereRoots roots = sphere_roots(x, y, z, closest, radius2);
+        const double first = roots.near >= least_distance ? roots.near : roots.far;
+        const bool crosses =
+            roots.crosses & (first >= least_distance) & (first < greatest_depth) & (first < t[i]);
         t[i] = crosses ? first : t[i];
         objects[i] = crosses ? object : objects[i];
     }
@@ -83,16 +95,12 @@ void block_by_sphere(const Vec3& center, double radius2, Lanes origin, Lanes dir
     const double cx = center.x, cy = center.y, cz = center.z;
     for (std::size_t i = 0; i < count; ++i) {
         const double x = cx - origin.x[i], y = cy - origin.y[i], z = cz - origin.z[i];
-        const double square = x * x + y * y + z * z;
         const double closest = x * direction.x[i] + y * direction.y[i] + z * direction.z[i];
-        const double half2 = radius2 - square + closest * closest;
-        const double half = std::sqrt(half2 > 0 ? half2 : 0), end = distance[i] - shadow_margin;
-        const double near = closest - half, far = closest + half;
-        const bool away = (square >= radius2) & (closest < least_cosine);
-        const bool near_blocks = (near > shadow_margin) & (near < end) & (near < greatest_depth);
-        const bool far_blocks = (far > shadow_margin) & (far < end) & (far < greatest_depth);
-        const bool blocks = (half2 > least_cosine) & !away & (near_blocks | far_blocks);
-        visible[i] = blocks ? 0 : visible[i];
+        const SphereRoots roots = sphere_roots(x, y, z, closest, radius2);
+        const double end = std::min(distance[i] - shadow_margin, greatest_depth);
+        const bool near_blocks = (roots.near > shadow_margin) & (roots.near < end);
+        const bool far_blocks = (roots.far > shadow_margin) & (roots.far < end);
+        visible[i] = roots.crosses & (near_blocks | far_blocks) ? 0 : visible[i];
     }
 }
 

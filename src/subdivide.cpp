@@ -1,5 +1,6 @@
 #include "subdivide.h"
 
+#include "vertices.h"
 #include "weld.h"
 
 #include <tuple>
@@ -19,6 +20,12 @@ std::vector<Index> places_of(const Mesh& mesh) {
 template <class T>
 void append_mean(std::vector<T>& values, Index a, Index b) {
     if (!values.empty()) values.push_back((values[a] + values[b]) * 0.5F);
+}
+
+void append_mean(std::vector<Tangent>& tangents, Index a, Index b) {
+    if (tangents.empty()) return;
+    const Tangent &s = tangents[a], &t = tangents[b];
+    tangents.push_back({(s.direction + t.direction) * 0.5F, (s.handedness + t.handedness) * 0.5F});
 }
 
 }  // namespace
@@ -90,16 +97,7 @@ void Subdivision::replace(Side old_side, Side new_side) {
 }
 
 Index Subdivision::midpoint(Index a, Index b) {
-    append_mean(mesh_.positions, a, b);
-    append_mean(mesh_.normals, a, b);
-    append_mean(mesh_.texcoords, a, b);
-    append_mean(mesh_.colors, a, b);
-    append_mean(mesh_.alphas, a, b);
-    if (!mesh_.tangents.empty()) {
-        const Tangent &s = mesh_.tangents[a], &t = mesh_.tangents[b];
-        mesh_.tangents.push_back(
-            {(s.direction + t.direction) * 0.5F, (s.handedness + t.handedness) * 0.5F});
-    }
+    each_vertex_array(mesh_, [&](auto& values) { append_mean(values, a, b); });
     place_.push_back(places_);
     return Index(mesh_.positions.size() - 1);
 }

@@ -1,5 +1,6 @@
 // Per-vertex tangents of texture coordinates.
 #include "normal_map.h"
+#include "vertices.h"
 #include "weld.h"
 
 #include <cmath>
@@ -48,11 +49,6 @@ Vec3 share_of_corner(const Mesh& mesh, const std::array<Index, 3>& facet, unsign
 Vec3 any_perpendicular(const Vec3& normal) {
     const Vec3 axis = std::abs(normal.x) < 0.9 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
     return in_plane(axis, normal);
-}
-
-template <class T>
-void repeat(std::vector<T>& values, Index index) {
-    if (!values.empty()) values.push_back(T(values[index]));
 }
 
 std::vector<Index> welded_vertices(const Mesh& mesh) {
@@ -106,12 +102,11 @@ void compute_tangents(Mesh& mesh, const ImageMap& map) {
         twin = vertex;
         if (twins[slot(-handedness)][vertex] != no_index) {
             twin = Index(mesh.positions.size());
-            repeat(mesh.positions, vertex);
-            repeat(mesh.normals, vertex);
-            repeat(mesh.texcoords, vertex);
-            repeat(mesh.colors, vertex);
-            repeat(mesh.alphas, vertex);
-            repeat(mesh.tangents, vertex);
+            each_vertex_array(mesh, [&](auto& values) {
+                if (values.empty()) return;
+                const auto value = values[vertex];
+                values.push_back(value);
+            });
         }
         mesh.tangents[twin] =
             tangent_of(sums[slot(handedness)][first[vertex]], mesh.normals[vertex], handedness);

@@ -78,19 +78,25 @@ void add_primary_ray(const Job& job, double x, double y, const Path& path, Gener
         rays.push(job.view.location, (job.view.direction + shift).normalized(), path);
 }
 
-// Every other bit of a number below 1024, from the lowest on.
-int even_bits(unsigned i) {
-    unsigned bits = 0;
-    for (unsigned k = 0; k < 5; ++k) bits |= (i >> k) & (1U << k);
-    return int(bits);
-}
+struct TilePixel {
+    int x = 0, y = 0;
+};
 
-// Pixels along a Z-order curve (Morton 1966), so that the rays of a packet are close together, and
-// so are those of a few packets.
+// The pixels of a tile along a Z-order curve (Morton 1966): the bits of x and y take turns.
+constexpr std::array<TilePixel, std::size_t(tile_side)* tile_side> curve = [] {
+    std::array<TilePixel, std::size_t(tile_side) * tile_side> pixels{};
+    for (unsigned i = 0; i < pixels.size(); ++i)
+        for (unsigned bit = 0; bit < 5; ++bit) {
+            pixels[i].x |= int(i >> bit & 1U << bit);
+            pixels[i].y |= int(i >> (bit + 1) & 1U << bit);
+        }
+    return pixels;
+}();
+
+// The rays of a packet are close together, and so are those of a few packets.
 void primary_rays(const Job& job, const Tile& tile, const PixelSample& sample, Generation& rays) {
     rays.clear();
-    for (unsigned i = 0; i < unsigned(tile_side * tile_side); ++i) {
-        const int x = even_bits(i), y = even_bits(i >> 1U);
+    for (const auto& [x, y] : curve) {
         if (x >= tile.width || y >= tile.height) continue;
         const Path path = {.weight = Vec3(sample.weight),
                            .pixel = std::uint32_t(y * tile.width + x),

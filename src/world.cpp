@@ -78,7 +78,6 @@ World::World(const Scene& given)
     for (const Material& m : scene.materials) {
         finishes.push_back(prepare(m, scene.ambient));
         translucent |= !opaque(m);
-        absorbing |= finishes.back().absorbs;
     }
     for (const Texture& t : scene.textures) samplers.push_back(make_sampler(t));
     for (const Light& light : scene.lights) {

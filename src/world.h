@@ -64,7 +64,6 @@ struct World {
     std::vector<PreparedPlane> planes = {};
     std::vector<Index> translucent_shapes = {};  ///< spheres and planes, as objects
     bool translucent = false;                    ///< any object lets light through
-    bool absorbing = false;                      ///< any interior takes light away
 
     explicit World(const Scene& given);
 

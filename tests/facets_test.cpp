@@ -1,4 +1,5 @@
 #include "facets.h"
+#include "random.h"
 #include "small_scenes.h"
 #include "support.h"
 
@@ -8,6 +9,7 @@
 #include <random>
 
 using namespace penumbra;
+using test::Random;
 
 namespace {
 
@@ -23,16 +25,6 @@ bool in_contour(const Vec3& i, const Vec3& a, const Vec3& b, const Vec3& c) {
 double distance_to_line(const Vec3& p, const Vec3& a, const Vec3& b) {
     return (p - a).cross(b - a).length() / (b - a).length();
 }
-
-struct Random {
-    std::mt19937 engine{20260};
-    double operator()(double low, double high) {
-        return std::uniform_real_distribution<double>(low, high)(engine);
-    }
-    Vec3 vector(double size) {
-        return {(*this)(-size, size), (*this)(-size, size), (*this)(-size, size)};
-    }
-};
 
 const std::array<Index, 1> first_ray = {0};
 

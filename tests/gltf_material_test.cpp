@@ -176,3 +176,32 @@ TEST_CASE("glTF materials, have normal maps with their scale") {
     gltf.root["materials"][0]["normalTexture"]["scale"] = 0;
     CHECK_FALSE(read(gltf).scene.materials[0].normal_map);
 }
+
+TEST_CASE("glTF materials, blend by the alpha of vertices") {
+    const auto imported_with = [](const std::string& mode, const std::vector<float>& colors) {
+        Gltf gltf = with_material({{"alphaMode", mode}, {"name", "veil"}});
+        gltf.root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+            gltf.accessor("VEC4", colors);
+        return read(gltf);
+    };
+    const std::vector<float> fading = {1, 0, 0, 0.25F, 1, 0, 0, 0.5F, 1, 0, 0, 1};
+    const Imported veil = imported_with("BLEND", fading);
+    CHECK(veil.losses.empty());
+    const Mesh& mesh = veil.scene.meshes.at(0);
+    CHECK(mesh.alphas == std::vector<float>{0.25F, 0.5F, 1});
+    REQUIRE(veil.scene.materials.size() == 1);
+    CHECK(veil.scene.materials[0].name == "veil");
+    REQUIRE(veil.scene.materials[0].coverage);
+    CHECK(veil.scene.materials[0].coverage->map.texture == no_index);
+
+    std::vector<float> colorful = fading;
+    colorful[1] = 1;
+    CHECK(imported_with("BLEND", colorful).losses.size() == 1);
+    CHECK(imported_with("OPAQUE", fading).scene.meshes.at(0).alphas.empty());
+    const std::vector<float> solid = {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1};
+    CHECK_FALSE(imported_with("BLEND", solid).scene.materials.at(0).coverage);
+    const Imported cut = imported_with("MASK", fading);
+    CHECK(cut.scene.meshes.at(0).alphas.empty());
+    CHECK(cut.losses == Losses{{"box.gltf#/meshes/0/primitives/0/attributes/COLOR_0",
+                                "the vertices' alpha is ignored (alphaMode MASK)"}});
+}

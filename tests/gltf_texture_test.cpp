@@ -195,6 +195,7 @@ TEST_CASE("glTF textures, on a second set of coordinates are laid by the first")
     CHECK(folded.losses.empty());
     REQUIRE(folded.scene.meshes.size() == 2);
     CHECK(folded.scene.instances.size() == 2);
+    CHECK(folded.scene.materials.size() == 2);
     CHECK(folded.scene.meshes[0].material != folded.scene.meshes[1].material);
     CHECK(folded.scene.meshes[1].positions.size() == 3);
     CHECK((emission_at(folded.scene, folded.scene.meshes[0], 0, 2) - Vec2(0, 1)).length() < 1e-6);

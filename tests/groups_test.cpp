@@ -1,4 +1,5 @@
 // What is asked of groups of rays at once agrees with each ray by itself.
+#include "random.h"
 #include "shaft.h"
 #include "shapes.h"
 #include "small_scenes.h"
@@ -8,31 +9,23 @@
 
 #include <cmath>
 #include <numeric>
-#include <random>
 
 using namespace penumbra;
+using test::Random;
 
 namespace {
 
-struct Random {
-    std::mt19937 engine{7};
-    double operator()(double low, double high) {
-        return std::uniform_real_distribution<double>(low, high)(engine);
-    }
-    Vec3 vector(double size) {
-        return {(*this)(-size, size), (*this)(-size, size), (*this)(-size, size)};
-    }
-    Bounds box(double place, double size) {
-        const Vec3 center = vector(place);
-        const Vec3 half((*this)(0, size), (*this)(0, size), (*this)(0, size));
-        return {.min = center - half, .max = center + half};
-    }
-    Vec3 inside(const Bounds& box) {
-        Vec3 point;
-        for (int axis = 0; axis < 3; ++axis) point[axis] = (*this)(box.min[axis], box.max[axis]);
-        return point;
-    }
-};
+Bounds random_box(Random& random, double place, double size) {
+    const Vec3 center = random.vector(place);
+    const Vec3 half(random(0, size), random(0, size), random(0, size));
+    return {.min = center - half, .max = center + half};
+}
+
+Vec3 point_in(Random& random, const Bounds& box) {
+    Vec3 point;
+    for (int axis = 0; axis < 3; ++axis) point[axis] = random(box.min[axis], box.max[axis]);
+    return point;
+}
 
 bool holds(const Bounds& box, const Vec3& p) {
     for (int axis = 0; axis < 3; ++axis)
@@ -46,8 +39,9 @@ TEST_CASE("groups of rays, touch every box and ball that one of the rays touches
     Random random;
     int shafts_apart = 0, capsules_apart = 0, beams_apart = 0;
     for (int round = 0; round < 3000; ++round) {
-        const Bounds from = random.box(4, 1), to = random.box(4, 1), box = random.box(6, 1);
-        const Bounds directions = random.box(1, 0.2);
+        const Bounds from = random_box(random, 4, 1), to = random_box(random, 4, 1),
+                     box = random_box(random, 6, 1);
+        const Bounds directions = random_box(random, 1, 0.2);
         const Vec3 center = random.vector(5);
         const double radius = random(0, 1);
         const Shaft shaft = make_shaft(from, to);
@@ -60,12 +54,12 @@ TEST_CASE("groups of rays, touch every box and ball that one of the rays touches
         capsules_apart += capsule_apart;
         beams_apart += beam_apart;
         for (int k = 0; k < 60; ++k) {
-            const Vec3 start = random.inside(from), end = random.inside(to);
+            const Vec3 start = point_in(random, from), end = point_in(random, to);
             const Vec3 point = start + (end - start) * random(0, 1);
             if (shaft_apart && holds(box, point)) FAIL("shaft of round " << round);
             if (capsule_apart && (point - center).length() < radius)
                 FAIL("capsule of round " << round);
-            const Vec3 far = start + random.inside(directions) * random(0, 20);
+            const Vec3 far = start + point_in(random, directions) * random(0, 20);
             if (beam_apart && holds(box, far)) FAIL("beam of round " << round);
         }
     }

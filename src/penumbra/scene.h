@@ -352,6 +352,12 @@ Vec3 fade_exponent(const Absorption& absorption);
 /// The virtual sources of `light`, in a fixed order.
 std::vector<Source> virtual_sources(const Light& light);
 
+/// Where `map` is looked up at the mesh's texture coordinates `uv`.
+inline Vec2 map_texcoord(const ImageMap& map, const Vec2& uv) {
+    const auto& t = map.transform;
+    return {t[0] * uv.x + t[1] * uv.y + t[2], t[3] * uv.x + t[4] * uv.y + t[5]};
+}
+
 /// A coverage that is at least this counts as the cutoff: equal numbers must not be told apart by
 /// their last bit.
 inline double cutoff_threshold(float cutoff) { return double(cutoff) - 1e-6; }
