@@ -1,5 +1,6 @@
 // glTF nodes -> what a scene of the file shows.
 #include "gltf.h"
+#include "gltf_texture.h"
 
 #include <fmt/format.h>
 
@@ -179,6 +180,7 @@ Imported read(const std::filesystem::path& file, const ModelOptions& options) {
     const tinygltf::Model& model = document.model;
     Reader reader{document, imported.scene, imported.losses, options};
     reader.pose = read_pose(reader);
+    expect_images(reader);
     Walker{reader}.walk();
     set_attenuation(imported.scene);
     drop_unused_materials(imported.scene);

@@ -58,6 +58,13 @@ bool is_ktx2(const std::vector<std::byte>& file) {
     return file.size() > start.size() && std::memcmp(file.data(), start.data(), start.size()) == 0;
 }
 
+Raster decode(const Document& document, int index) {
+    const ImageSource& image = document.images[std::size_t(index)];
+    const auto bytes = image_bytes(document, image, "");
+    if (is_ktx2(bytes)) throw Error(Failure::input, "", ktx2);
+    return decode_image(bytes, printable(image_name(image, index)));
+}
+
 // The image of a texture that can be read, decoded; -1, and a loss, if there is none.
 int decode(Reader& reader, int texture_index) {
     const Document& document = reader.document;
@@ -65,13 +72,10 @@ int decode(Reader& reader, int texture_index) {
     std::string reason = "it has no image in a format that can be read";
     if (extension_source(texture, "KHR_texture_basisu") >= 0) reason = ktx2;
     for (const int index : candidates(texture)) {
-        if (reader.looks.store.find(reader.scene, std::to_string(index)) != nullptr) return index;
-        const ImageSource& image = document.images[std::size_t(index)];
+        const std::string name = std::to_string(index);
         try {
-            const auto bytes = image_bytes(document, image, "");
-            if (is_ktx2(bytes)) throw Error(Failure::input, "", ktx2);
-            reader.looks.store.add(std::to_string(index),
-                                   decode_image(bytes, printable(image_name(image, index))));
+            if (reader.looks.store.find(reader.scene, name) == nullptr)
+                reader.looks.store.add(name, decode(document, index));
             return index;
         } catch (const Error& error) {
             reason = error.what();
@@ -151,6 +155,24 @@ Texture frame_of(const Reader& reader, int index) {
             .bilinear = sampling.bilinear,
             .wrap_u = sampling.wrap_u,
             .wrap_v = sampling.wrap_v};
+}
+
+void expect_images(Reader& reader) {
+    const Document& document = reader.document;
+    const auto expect = [&](int texture) {
+        if (texture < 0) return;
+        const auto images = candidates(document.model.textures[std::size_t(texture)]);
+        if (images.empty()) return;
+        reader.looks.store.expect(
+            std::to_string(images.front()),
+            [&document, image = images.front()] { return decode(document, image); });
+    };
+    for (const tinygltf::Material& material : document.model.materials) {
+        expect(material.pbrMetallicRoughness.baseColorTexture.index);
+        expect(material.pbrMetallicRoughness.metallicRoughnessTexture.index);
+        expect(material.emissiveTexture.index);
+        expect(material.normalTexture.index);
+    }
 }
 
 const Raster* raster_of(Reader& reader, int index) {

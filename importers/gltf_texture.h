@@ -31,6 +31,9 @@ std::array<double, 6> transform_of(const TextureInfo& info);
 /// The name and the sampling of glTF texture `index`, without samples.
 Texture frame_of(const Reader& reader, int index);
 
+/// Has the images of materials decoded ahead, in the order in which they will be asked for.
+void expect_images(Reader& reader);
+
 /// The decoded image of glTF texture `index`; none, and a loss, if it cannot be read. It stays as
 /// ImageStore says.
 const Raster* raster_of(Reader& reader, int index);

@@ -1,5 +1,7 @@
 #include "image_store.h"
 
+#include <tbb/global_control.h>
+
 #include <algorithm>
 
 namespace penumbra {
@@ -11,13 +13,41 @@ constexpr std::size_t most_recent = 4;
 
 }  // namespace
 
+void ImageStore::expect(const std::string& name, std::function<Raster()> decode) {
+    const auto [place, fresh] = place_expected.try_emplace(name, expected.size());
+    if (fresh) expected.push_back({.decode = std::move(decode)});
+}
+
+// Images that nobody asks for in the end must not pile up.
+void ImageStore::decode_ahead(std::size_t from) {
+    const auto threads =
+        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    if (threads < 2) return;
+    std::size_t free =
+        threads - std::min(threads, std::size_t(std::ranges::count_if(expected, &Expected::waits)));
+    for (std::size_t i = from; i < std::min(from + threads, expected.size()); ++i) {
+        if (!expected[i].decode || expected[i].waits() || free == 0) continue;
+        expected[i].image =
+            std::async(std::launch::async | std::launch::deferred, expected[i].decode);
+        --free;
+    }
+}
+
 const Raster* ImageStore::find(const Scene& scene, const std::string& name) {
     if (const auto found = placed.find(name); found != placed.end())
         return &scene.textures[found->second].raster;
     const auto found = std::find_if(recent.begin(), recent.end(),
                                     [&](const auto& entry) { return entry.first == name; });
-    if (found == recent.end()) return nullptr;
-    recent.splice(recent.begin(), recent, found);
+    if (found != recent.end()) {
+        recent.splice(recent.begin(), recent, found);
+        return &recent.front().second;
+    }
+    const auto awaited = place_expected.find(name);
+    if (awaited == place_expected.end() || !expected[awaited->second].decode) return nullptr;
+    Expected& entry = expected[awaited->second];
+    const auto decode = std::exchange(entry.decode, nullptr);
+    decode_ahead(awaited->second + 1);
+    add(name, entry.waits() ? entry.image.get() : decode());
     return &recent.front().second;
 }
 

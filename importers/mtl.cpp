@@ -200,11 +200,33 @@ void MaterialTally::append_to(Losses& losses) const {
     }
 }
 
+namespace {
+
+// What becomes part of a Material.
+constexpr auto drawn = std::to_array<std::string_view>(
+    {"map_kd", "map_d", "map_ke", "norm", "map_ks", "map_ns", "map_pm", "map_pr"});
+
+void expect_images(const Model& model,
+                   const std::unordered_map<std::string, const MtlEntry*>& known,
+                   TextureReader& textures) {
+    MaterialTally told_later;
+    for (const Named& used : model.materials) {
+        const auto found = known.find(used.name);
+        if (found == known.end()) continue;
+        for (const Statement& map : read_values(*found->second, told_later).maps)
+            if (std::ranges::find(drawn, map.key) != drawn.end())
+                textures.expect(*found->second, map);
+    }
+}
+
+}  // namespace
+
 void build_materials(const Model& model, const std::vector<MtlEntry>& entries,
                      const std::filesystem::path& file, Imported& result) {
     const auto known = by_name(entries, result.losses);
     MaterialTally tally;
     TextureReader textures(file, result.scene, tally);
+    expect_images(model, known, textures);
     std::size_t missing = 0;
     Named first_missing;
     for (const Named& used : model.materials) {

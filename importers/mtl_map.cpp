@@ -124,6 +124,10 @@ void take_options(std::string_view& rest, MapOperands& result) {
     }
 }
 
+Raster decode(const fs::path& file) {
+    return decode_image(read_bytes(file, max_texture_size), file.string());
+}
+
 }  // namespace
 
 MapOperands parse_map(std::string_view operands) {
@@ -147,6 +151,22 @@ MapOperands parse_map(std::string_view operands) {
 TextureReader::TextureReader(const fs::path& model, Scene& into, MaterialTally& lost)
     : folder(model.parent_path()), scene(into), tally(lost) {}
 
+// A name may have a comment behind it, or hold what looks like one.
+Found TextureReader::locate(const MtlEntry& entry, const std::string& name) const {
+    Found found = find_below(folder, entry.from, name);
+    const std::string_view bare = name_without_comment(name);
+    if (found.file.empty() && found.refusal.empty() && bare != name)
+        found = find_below(folder, entry.from, bare);
+    return found;
+}
+
+void TextureReader::expect(const MtlEntry& entry, const Statement& statement) {
+    const std::string name = parse_map(statement.operands).file;
+    if (name.empty()) return;
+    const fs::path file = locate(entry, name).file;
+    if (!file.empty()) store.expect(file.string(), [file] { return decode(file); });
+}
+
 std::optional<MapImage> TextureReader::open(const MtlEntry& entry, const Statement& statement) {
     MapImage image = {
         .word = statement.word, .line = statement.line, .operands = parse_map(statement.operands)};
@@ -157,10 +177,7 @@ std::optional<MapImage> TextureReader::open(const MtlEntry& entry, const Stateme
         return std::nullopt;
     };
     if (file.empty()) return lose("without a file name is ignored");
-    Found found = find_below(folder, entry.from, file);
-    const std::string_view bare = name_without_comment(file);
-    if (found.file.empty() && found.refusal.empty() && bare != file)
-        found = find_below(folder, entry.from, bare);
+    const Found found = locate(entry, file);
     if (found.file.empty())
         return lose(fmt::format("{} {}{}", named,
                                 found.refusal.empty() ? "is not found" : found.refusal,
@@ -184,7 +201,7 @@ const Raster& TextureReader::raster(const MapImage& image) {
     if (const Raster* raster = store.find(scene, file)) return *raster;
     if (const auto found = broken.find(file); found != broken.end())
         throw Error(Failure::input, "", found->second);
-    store.add(file, decode_image(read_bytes(image.file, max_texture_size), file));
+    store.add(file, decode(image.file));
     return *store.find(scene, file);
 }
 

@@ -2,15 +2,21 @@
 
 #include "file.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace penumbra {
 
 Imported read_obj(const std::filesystem::path& file) {
     const std::string name = file.string();
     Imported result;
     obj::Tally tally(name);
-    obj::Text text = obj::clean_obj(read_text(file), name, tally);
-    const std::vector<obj::Named> libraries = std::move(text.libraries);
-    obj::Model model = obj::parse(std::move(text), name, tally);
+    std::vector<obj::Piece> pieces = obj::clean_obj(read_text(file), name, tally);
+    obj::Model model = obj::parse(pieces, name, tally);
+    std::vector<obj::Named> libraries;
+    for (const obj::Piece& piece : pieces)
+        std::ranges::copy(piece.libraries, std::back_inserter(libraries));
+    pieces.clear();
     if (model.faces.empty()) throw Error(Failure::input, name, "no facets in it");
 
     obj::resolve_normals(model, tally);

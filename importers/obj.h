@@ -32,6 +32,8 @@ class Tally {
     void add(const std::string& what, Index line);
     /// In order of first occurrence; "(n times)" is added to what occurred more than once.
     void append_to(Losses& losses) const;
+    /// Adds what a later part of the file has left out.
+    void append(const Tally& later);
 
   private:
     struct Entry {
@@ -102,18 +104,37 @@ struct Named {
     Index line = 0;
 };
 
-/// An OBJ file that tinyobjloader reads rightly, and what it would not hand on.
-struct Text {
-    std::string text = {};  ///< statements v vt vn f o g usemtl only, on their original lines
-    std::vector<std::pair<std::size_t, Index>> smoothing = {};  ///< from facet `first` on: group
-    std::vector<Color> colors = {};      ///< linear, one per v; empty unless every v has one
-    std::vector<Named> libraries = {};   ///< operands of mtllib
-    std::vector<Index> face_lines = {};  ///< one per f
-    std::vector<Index> usemtl_lines = {};
+/// How many statements, or corners of faces, there are.
+struct Counts {
+    std::size_t positions = 0, texcoords = 0, normals = 0, faces = 0, corners = 0;
 };
 
-/// Checks and cleans an OBJ file. Throws Error (input) with the line.
-Text clean_obj(std::string bytes, const std::string& file, Tally& tally);
+/// From a face on: the object, group, material (names) or smoothing group (a number).
+struct Change {
+    enum class Of { object, group, material, smoothing };
+    Of of = Of::object;
+    std::size_t face = 0;  ///< in the piece
+    std::string name = {};
+    Index number = 0;
+    Index line = 0;
+};
+
+/// A run of whole lines of an OBJ file that tinyobjloader reads rightly, and what it would not hand
+/// on.
+struct Piece {
+    Index first_line = 1;
+    std::string text = {};  ///< statements v vt vn f only, on their original lines
+    Counts counts = {};     ///< of them
+    std::vector<Index> face_lines = {};
+    std::vector<Change> changes = {};
+    std::vector<Color> colors = {};     ///< as in the file, of those v that have one
+    Index first_bare = 0;               ///< line of the first v without a colour; 0: none
+    float brightest = 0;                ///< of the colours' components
+    std::vector<Named> libraries = {};  ///< operands of mtllib
+};
+
+/// Checks and cleans an OBJ file, all pieces at once. Throws Error (input) with the line.
+std::vector<Piece> clean_obj(std::string bytes, const std::string& file, Tally& tally);
 
 // ---- obj_parse.cpp ----------------------------------------------------------------------------
 
@@ -154,8 +175,8 @@ struct Model {
     }
 };
 
-/// Parses a cleaned OBJ file. Throws Error (input) with the line.
-Model parse(Text text, const std::string& file, Tally& tally);
+/// Parses a cleaned OBJ file, all pieces at once. Throws Error (input) with the line.
+Model parse(const std::vector<Piece>& pieces, const std::string& file, Tally& tally);
 
 // ---- obj_normals.cpp --------------------------------------------------------------------------
 
@@ -251,6 +272,10 @@ class TextureReader {
   public:
     TextureReader(const std::filesystem::path& model, Scene& into, MaterialTally& lost);
 
+    /// The image that `statement` names, if there is one, will be opened later: it may be decoded
+    /// ahead.
+    void expect(const MtlEntry& entry, const Statement& statement);
+
     /// The image that `statement` names; none, and a loss, if it cannot be had.
     std::optional<MapImage> open(const MtlEntry& entry, const Statement& statement);
 
@@ -267,6 +292,8 @@ class TextureReader {
                   const std::function<Raster()>& make);
 
   private:
+    Found locate(const MtlEntry& entry, const std::string& name) const;
+
     std::filesystem::path folder = {};
     Scene& scene;
     MaterialTally& tally;

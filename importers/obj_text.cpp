@@ -1,6 +1,5 @@
 #include "obj.h"
-
-#include "penumbra/image.h"
+#include "parallel.h"
 
 #include <fmt/format.h>
 
@@ -54,12 +53,8 @@ constexpr auto of_free_form =
 struct Cleaner {
     const std::string& file;
     Tally& tally;
-    Text result = {};
+    Piece result = {};
     Index line = 0;
-    std::size_t vertices = 0;
-    Index group = 0;       // of smoothing
-    Index first_bare = 0;  // line of the first v without a colour
-    float brightest = 0;
     std::string mended = {};
 
     [[noreturn]] void fail(const std::string& problem) const {
@@ -101,11 +96,11 @@ struct Cleaner {
 
     void vertex(std::string_view rest) {
         const std::size_t count = numbers("v", rest, 3);
-        ++vertices;
+        ++result.counts.positions;
         if (count >= 6)
             color(rest);
-        else if (first_bare == 0)
-            first_bare = line;
+        else if (result.first_bare == 0)
+            result.first_bare = line;
         if (count == 4) weight(rest);
         if (count == 5 || count > 6) tally.add("numbers at the end of a v line are ignored", line);
         (result.text += "v ") += rest;
@@ -124,7 +119,7 @@ struct Cleaner {
         Color color(0);
         for (int i = 0; i < 3; ++i) {
             color[i] = std::max(number(rest), 0.0F);
-            brightest = std::max(brightest, color[i]);
+            result.brightest = std::max(result.brightest, color[i]);
         }
         result.colors.push_back(color);
     }
@@ -138,6 +133,7 @@ struct Cleaner {
     // A normal that is no number is a common export fault; it becomes zero, which the facet's
     // replaces later.
     void normal(std::string_view rest) {
+        ++result.counts.normals;
         std::string_view words = rest;
         for (auto word = next_word(words); !word.empty(); word = next_word(words)) {
             if (kind_of(word) != Word::not_finite) continue;
@@ -149,6 +145,7 @@ struct Cleaner {
     }
 
     void texcoord(std::string_view rest) {
+        ++result.counts.texcoords;
         numbers("vt", rest, 1);
         (result.text += "vt ") += rest;
     }
@@ -194,6 +191,12 @@ struct Cleaner {
             return;
         }
         result.face_lines.push_back(line);
+        ++result.counts.faces;
+        result.counts.corners += count;
+    }
+
+    void change(Change::Of of, std::string name, Index number = 0) {
+        result.changes.push_back({of, result.counts.faces, std::move(name), number, line});
     }
 
     void smoothing(std::string_view rest) {
@@ -207,11 +210,16 @@ struct Cleaner {
             tally.add(
                 fmt::format("smoothing group '{}' is not a number; taken as off", printable(word)),
                 line);
-        if (value != group) result.smoothing.emplace_back(result.face_lines.size(), group = value);
+        change(Change::Of::smoothing, "", value);
     }
 
-    void name(std::string_view keyword, std::string_view rest) {
-        ((result.text += keyword) += ' ') += name_without_comment(rest);
+    // A face may be of several groups.
+    static std::string group_names(std::string_view text) {
+        std::string names;
+        std::string_view rest = name_without_comment(text);
+        for (auto word = next_word(rest); !word.empty(); word = next_word(rest))
+            (names += names.empty() ? "" : " ") += word;
+        return names;
     }
 
     void other(std::string_view keyword) {
@@ -230,46 +238,59 @@ struct Cleaner {
         if (keyword == "vt") return texcoord(plain);
         if (keyword == "vn") return normal(plain);
         if (keyword == "s") return smoothing(plain);
-        if (keyword == "usemtl") result.usemtl_lines.push_back(line);
-        if (keyword == "g" || keyword == "o" || keyword == "usemtl") return name(keyword, text);
+        if (keyword == "usemtl")
+            return change(Change::Of::material, std::string(name_without_comment(text)));
+        if (keyword == "o")
+            return change(Change::Of::object, std::string(name_without_comment(text)));
+        if (keyword == "g") return change(Change::Of::group, group_names(text));
         if (keyword == "mtllib") return result.libraries.push_back({std::string(trim(text)), line});
         other(keyword);
     }
 
-    void finish_colors() {
-        auto& colors = result.colors;
-        if (colors.empty()) return;
-        if (colors.size() < vertices) {
-            tally.add(fmt::format("vertex colours are ignored: only {} of {} vertices have one",
-                                  colors.size(), vertices),
-                      first_bare);
-            colors.clear();
-            return;
+    void clean(std::string_view lines) {
+        result.text.reserve(lines.size() + 1);
+        for (std::size_t at = 0; at < lines.size(); ++line) {
+            const std::size_t end = std::min(lines.find('\n', at), lines.size());
+            statement(lines.substr(at, end - at));
+            keep("\n");
+            at = end + 1;
         }
-        if (brightest > 1) tally.add("vertex colours exceed 1; they are taken as 0 to 255", 0);
-        const float scale = brightest > 1 ? 1.0F / 255 : 1.0F;
-        // The format does not say in what space they are. Programs store what they display: sRGB.
-        // Blender, for one, encodes them on export and decodes them on import.
-        for (Color& color : colors)
-            for (int i = 0; i < 3; ++i) color[i] = srgb_to_linear(std::min(color[i] * scale, 1.0F));
     }
 };
 
+// A text in runs of whole lines, long enough to be worth a task.
+std::vector<std::string_view> pieces_of(std::string_view text) {
+    constexpr std::size_t least = 1U << 20U;
+    std::vector<std::string_view> pieces;
+    while (!text.empty()) {
+        const std::size_t end = text.size() > least ? text.find('\n', least) : text.npos;
+        pieces.push_back(text.substr(0, end == text.npos ? end : end + 1));
+        text.remove_prefix(pieces.back().size());
+    }
+    return pieces;
+}
+
 }  // namespace
 
-Text clean_obj(std::string bytes, const std::string& file, Tally& tally) {
+std::vector<Piece> clean_obj(std::string bytes, const std::string& file, Tally& tally) {
     const std::string text = join_lines(to_utf8(std::move(bytes)));
-    Cleaner cleaner = {.file = file, .tally = tally};
-    cleaner.result.text.reserve(text.size() + 1);
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t end = std::min(text.find('\n', at), text.size());
-        ++cleaner.line;
-        cleaner.statement(std::string_view(text).substr(at, end - at));
-        cleaner.keep("\n");
-        at = end + 1;
-    }
-    cleaner.finish_colors();
-    return std::move(cleaner.result);
+    const std::vector<std::string_view> lines = pieces_of(text);
+    std::vector<Piece> pieces(lines.size());
+    std::vector<Tally> tallies(lines.size(), Tally(file));
+    for (std::size_t i = 1; i < lines.size(); ++i)
+        pieces[i].first_line =
+            pieces[i - 1].first_line + Index(std::ranges::count(lines[i - 1], '\n'));
+    for_each_in_parallel(lines.size(), [&](std::size_t i) {
+        const Index first_line = pieces[i].first_line;
+        Cleaner cleaner = {.file = file,
+                           .tally = tallies[i],
+                           .result = {.first_line = first_line},
+                           .line = first_line};
+        cleaner.clean(lines[i]);
+        pieces[i] = std::move(cleaner.result);
+    });
+    for (const Tally& part : tallies) tally.append(part);
+    return pieces;
 }
 
 }  // namespace penumbra::obj

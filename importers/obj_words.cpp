@@ -46,6 +46,13 @@ void Tally::add(const std::string& what, Index line) {
     ++entries[found->second].count;
 }
 
+void Tally::append(const Tally& later) {
+    for (const Entry& entry : later.entries) {
+        add(entry.what, entry.line);
+        entries[by_what.at(entry.what)].count += entry.count - 1;
+    }
+}
+
 void Tally::append_to(Losses& losses) const {
     for (const Entry& entry : entries)
         losses.push_back(

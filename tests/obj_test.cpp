@@ -1,5 +1,9 @@
 #include "obj_files.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 using namespace penumbra;
 using test::area;
 using test::facets;
@@ -110,6 +114,53 @@ TEST_CASE("Obj, an index that does not exist is an error with its line") {
          {"1.5", "a", "0x1", "1-2", "1/1/1/1", "//", "1/a", "//1", "1///2", "+-1", "1/-"})
         CHECK(message(quad + "f " + word + " 2 3\n") ==
               "m.obj:5: '" + word + "' is not a vertex of the form v, v/vt, v//vn or v/vt/vn");
+}
+
+// A file that is read in several pieces: `count` quads side by side, each of its own vertices.
+std::string long_file(int count) {
+    std::string text = "s 1\no row\ng first\n";
+    for (int i = 0; i < count; ++i) {
+        if (i == count / 2) text += "s off\ng second\n";
+        for (const char* corner : {"0", "1"})
+            text += fmt::format("v {0}.000000000000 {1} 0\nv {0}.500000000000 {1} 0\n", i, corner);
+        text += i % 2 == 0
+                    ? "f -4 -3 -1 -2\n"
+                    : fmt::format("f {} {} {} {}\n", 4 * i + 1, 4 * i + 2, 4 * i + 4, 4 * i + 3);
+    }
+    return text;
+}
+
+TEST_CASE("Obj, a long file says what it would say in one piece") {
+    const int count = 60000;
+    const std::string text = long_file(count);
+    REQUIRE(text.size() > 5'000'000);
+    const Imported imported = read(text);
+    const Scene& scene = imported.scene;
+    CHECK(losses(imported).empty());
+    CHECK(facets(scene) == 2 * count);
+    CHECK(std::abs(area(scene) - 0.5 * count) < 1e-6 * count);
+    REQUIRE(scene.meshes.size() == 2);
+    CHECK(scene.meshes[0].name == "row/first");
+    CHECK(scene.meshes[1].name == "row/second");
+    CHECK(scene.meshes[0].triangles.size() == count);
+    CHECK_FALSE(scene.meshes[0].normals.empty());
+    CHECK(scene.meshes[1].normals.empty());
+}
+
+TEST_CASE("Obj, of the faults of a long file the first is said, with its line") {
+    const int count = 60000;
+    const std::string text = long_file(count);
+    const int lines = 3 + 2 + 5 * count;  // of the text
+    CHECK(message(text + "f 1 2 999999\nf 1 2 x\n") ==
+          fmt::format("m.obj:{}: '{}' is not a vertex of the form v, v/vt, v//vn or v/vt/vn",
+                      lines + 2, "x"));
+    CHECK(message(text + "f 1 2 999999\n" + text + "v 1e300 0 0\n") ==
+          fmt::format("m.obj:{}: vertex 999999 of {} does not exist", lines + 1, 8 * count + 1));
+    CHECK(message("f 1 2 -3\n" + text + "v 1e300 0 0\n") ==
+          "m.obj:1: vertex -3 of the 0 before this line does not exist");
+    CHECK(
+        message(text + "v 1e300 0 0\n") ==
+        fmt::format("m.obj:{}: v has a number that is too large; the limit is 3.4e38", lines + 1));
 }
 
 TEST_CASE("Obj, indices into what the file has none of are ignored and said") {

@@ -4,8 +4,11 @@
 
 #include "penumbra/image.h"
 
+#include <tbb/global_control.h>
+
 #include <exception>
 #include <new>
+#include <optional>
 
 namespace penumbra::cli {
 
@@ -24,6 +27,9 @@ namespace {
 
 int run(const Arguments& arguments, Console& console) {
     const Interruption interruption;
+    std::optional<tbb::global_control> limit;
+    if (arguments.threads > 0)
+        limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(arguments.threads));
     const Context context = {arguments, console, interruption.token()};
     switch (arguments.command) {
     case Command::render: return render(context);
