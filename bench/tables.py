@@ -11,13 +11,14 @@ def best(runs, key=lambda run: run.cpu):
     return min(key(run) for run in runs)
 
 
+def phase(runs, name):
+    """Seconds of wall time that a program says a phase has taken: import, build or render."""
+    return best(runs, lambda run: run.output["seconds"][name])
+
+
 def render_phase(ours, floor):
-    """Seconds of both from the loaded scene to the picture, building the hierarchy included where
-    penumbra does not tell it apart."""
-    apart = "build" in ours[0].output["seconds"]
-    extra = (lambda s: s["render"]) if apart else (lambda s: s["build"] + s["render"])
-    return (best(ours, lambda run: run.output["seconds"]["render"]),
-            best(floor, lambda run: extra(run.output["seconds"])))
+    """Seconds of both from the search trees to the picture."""
+    return phase(ours, "render"), phase(floor, "render")
 
 
 def geometric_mean(values):
@@ -92,12 +93,9 @@ def threads(one, many, count):
     """How much faster the render phase is with more threads."""
     rows, gains = [], []
     for name, runs in one.items():
-        before, after = (best(r["penumbra"], lambda run: run.output["seconds"]["render"])
-                         for r in (runs, many[name]))
-        floor = (best(r["floor"], lambda run: run.output["seconds"]["render"])
-                 for r in (runs, many[name]))
+        before, after = (phase(r["penumbra"], "render") for r in (runs, many[name]))
+        first, second = (phase(r["floor"], "render") for r in (runs, many[name]))
         gains.append(before / after)
-        first, second = floor
         rows.append([name, number(before), number(after), f"**{number(gains[-1])}**",
                      number(first / second)])
     rows.append(["geometric mean", "", "", f"**{number(geometric_mean(gains))}**", ""])
@@ -111,6 +109,8 @@ def growth(what, results):
         render, floor = render_phase(runs["penumbra"], runs["floor"])
         first = first or render
         rows.append([f"{count:,}", number(render, 3), number(render / first), number(floor, 3),
-                     number(best(runs["penumbra"], lambda r: r.output["seconds"]["import"]), 3),
+                     number(phase(runs["penumbra"], "import"), 3),
+                     number(phase(runs["penumbra"], "build"), 3),
                      megabytes(best(runs["penumbra"], lambda r: r.memory))])
-    return table([what, "render phase, s", "times the first", "floor, s", "import, s", "MB"], rows)
+    return table([what, "render phase, s", "times the first", "floor, s", "import, s", "building, s", "MB"],
+                 rows)

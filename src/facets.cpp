@@ -1,6 +1,7 @@
 #include "facets.h"
 
 #include "embree.h"
+#include "simd.h"
 
 #include <algorithm>
 #include <cmath>
@@ -251,6 +252,32 @@ bool Facets::translucent(const Vec3& origin, const Vec3& direction, double neare
     });
 }
 
+namespace {
+
+// What goes where in a packet: float(from[ray] - less).
+struct Column {
+    const double* from = nullptr;
+    float* to = nullptr;
+    double less = 0;
+};
+
+// Fills a packet with the rays `from`, of which there are a multiple of eight.
+PENUMBRA_VECTORISED
+void gather(std::span<const Column> columns, std::span<const Index> from) {
+    const Index* const rays = from.data();
+    for (const Column& column : columns) {
+        const double* const values = column.from;
+        float* const to = column.to;
+        for (std::size_t first = 0; first < from.size(); first += 8) {
+            PENUMBRA_INDEPENDENT
+            for (std::size_t i = first; i < first + 8; ++i)
+                to[i] = float(values[rays[i]] - column.less);
+        }
+    }
+}
+
+}  // namespace
+
 template <class Width>
 void Facets::closest_packets(const Rays& rays, Hits& hits, bool coherent) const {
     embree::Query query(coherent && !instanced_);
@@ -307,29 +334,33 @@ template <class Width>
 void Facets::block_packets(const ShadowRays& rays, std::span<const Index> asked,
                            std::span<double> visible) const {
     embree::Query query(!instanced_);
+    typename Width::Shadows packet;
+    for (std::size_t lane = 0; lane < Width::size; ++lane) {
+        packet.tnear[lane] = float(shadow_margin);
+        packet.time[lane] = 0;
+        packet.mask[lane] = opaque_mask;
+        packet.id[lane] = 0;
+        packet.flags[lane] = 0;
+    }
+    const std::array<Column, 7> columns = {{{rays.origin.x, packet.org_x},
+                                            {rays.origin.y, packet.org_y},
+                                            {rays.origin.z, packet.org_z},
+                                            {rays.direction.x, packet.dir_x},
+                                            {rays.direction.y, packet.dir_y},
+                                            {rays.direction.z, packet.dir_z},
+                                            {rays.distance, packet.tfar, shadow_margin}}};
     for (std::size_t first = 0; first < asked.size(); first += Width::size) {
-        typename Width::Shadows packet;
         alignas(64) std::array<int, Width::size> valid{};
+        std::array<Index, Width::size> from{};
         const std::size_t lanes = std::min(Width::size, asked.size() - first);
-        for (std::size_t lane = 0; lane < lanes; ++lane) {
-            const std::size_t i = asked[first + lane];
-            valid[lane] = rays.steepness[i] < grazing_sine ? 0 : -1;
-            packet.org_x[lane] = float(rays.origin.x[i]);
-            packet.org_y[lane] = float(rays.origin.y[i]);
-            packet.org_z[lane] = float(rays.origin.z[i]);
-            packet.dir_x[lane] = float(rays.direction.x[i]);
-            packet.dir_y[lane] = float(rays.direction.y[i]);
-            packet.dir_z[lane] = float(rays.direction.z[i]);
-            packet.tnear[lane] = float(shadow_margin);
-            packet.tfar[lane] = float(rays.distance[i] - shadow_margin);
-            packet.time[lane] = 0;
-            packet.mask[lane] = opaque_mask;
-            packet.id[lane] = 0;
-            packet.flags[lane] = 0;
+        for (std::size_t lane = 0; lane < Width::size; ++lane) {
+            from[lane] = asked[std::min(first + lane, asked.size() - 1)];
+            valid[lane] = lane < lanes && rays.steepness[from[lane]] >= grazing_sine ? -1 : 0;
         }
+        gather(columns, from);
         embree::occluded(valid.data(), device_->scene, query, packet);
         for (std::size_t lane = 0; lane < lanes; ++lane) {
-            const std::size_t i = asked[first + lane];
+            const std::size_t i = from[lane];
             const bool blocked = valid[lane] != 0 ? packet.tfar[lane] < 0
                                                   : exact_blocked(rays.origin[i], rays.direction[i],
                                                                   rays.distance[i]);

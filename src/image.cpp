@@ -9,9 +9,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cctype>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <stdexcept>
 
 namespace penumbra {
@@ -56,19 +58,57 @@ void store(std::byte*& to, Sample sample) {
     to += sizeof sample;
 }
 
+std::uint8_t encoded8(float linear) { return std::uint8_t(quantise(linear_to_srgb(linear), 255)); }
+
+// The same without a power: the least linear value of every 8-bit sample, and where to begin
+// looking.
+class Encoder8 {
+  public:
+    Encoder8() {
+        for (std::size_t sample = 1; sample < 256; ++sample) {
+            std::uint32_t below = 0, at = std::bit_cast<std::uint32_t>(1.0F);  // floats in order
+            while (at - below > 1) {
+                const std::uint32_t middle = below + (at - below) / 2;
+                (encoded8(std::bit_cast<float>(middle)) < sample ? below : at) = middle;
+            }
+            least_[sample] = std::bit_cast<float>(at);
+        }
+        least_[256] = std::numeric_limits<float>::infinity();
+        for (std::size_t i = 0; i < first_.size(); ++i)
+            first_[i] = encoded8(float(i) / float(first_.size()));
+    }
+    std::uint8_t operator()(float linear) const {
+        if (!(linear > 0)) return 0;
+        if (linear >= 1) return 255;
+        std::size_t sample = first_[std::size_t(linear * float(first_.size()))];
+        while (linear >= least_[sample + 1]) ++sample;
+        return std::uint8_t(sample);
+    }
+
+  private:
+    std::array<float, 257> least_ = {};
+    std::array<std::uint8_t, 4096> first_ = {};
+};
+
+template <class Store>
+void each_value(const Image& image, const Store& store) {
+    for (const Color& pixel : image.pixels)
+        for (const float value : {pixel.x, pixel.y, pixel.z}) store(value);
+}
+
 Raster to_raster(const Image& image, Depth depth) {
     Raster raster = {image.width, image.height, 3, depth, {}};
     raster.data.resize(image.pixels.size() * 3 * std::size_t(depth));
     std::byte* to = raster.data.data();
-    for (const Color& pixel : image.pixels) {
-        for (const float value : {pixel.x, pixel.y, pixel.z}) {
-            if (depth == Depth::f32)
-                store(to, value);
-            else if (depth == Depth::u16)
-                store(to, std::uint16_t(quantise(linear_to_srgb(value), 65535)));
-            else
-                store(to, std::uint8_t(quantise(linear_to_srgb(value), 255)));
-        }
+    if (depth == Depth::f32) {
+        each_value(image, [&](float value) { store(to, value); });
+    } else if (depth == Depth::u16) {
+        each_value(image, [&](float value) {
+            store(to, std::uint16_t(quantise(linear_to_srgb(value), 65535)));
+        });
+    } else {
+        static const Encoder8 encoder;
+        each_value(image, [&](float value) { store(to, encoder(value)); });
     }
     return raster;
 }

@@ -1,6 +1,7 @@
 #include "png_codec.h"
 
 #include <png.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <bit>
@@ -107,7 +108,10 @@ void write_all(Codec& codec, bool srgb) {
     const Raster& raster = codec.raster;
     png_set_write_fn(codec.png, &codec, Codec::write, Codec::flush);
     png_set_error_fn(codec.png, &codec, Codec::on_error, Codec::on_warning);
-    png_set_compression_level(codec.png, 4);
+    // Of what the Paeth filter leaves of a rendered picture, runs alone make files as small as a
+    // search for repetitions does, in less than half the time.
+    png_set_filter(codec.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_PAETH);
+    png_set_compression_strategy(codec.png, Z_RLE);
     png_set_IHDR(codec.png, codec.info, png_uint_32(raster.width), png_uint_32(raster.height),
                  raster.depth == Depth::u16 ? 16 : 8, color_types[std::size_t(raster.channels - 1)],
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);

@@ -36,20 +36,38 @@ bool contains(const Bounds& box, const Bounds& other) {
     return true;
 }
 
+// The instances that reach furthest along the axes, by the boxes around them, then all.
+std::vector<std::size_t> far_ones_first(const std::vector<Bounds>& boxes) {
+    std::vector<std::size_t> order;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto low = std::ranges::min_element(boxes, {}, [&](auto& b) { return b.min[axis]; });
+        const auto high = std::ranges::max_element(boxes, {}, [&](auto& b) { return b.max[axis]; });
+        if (low != boxes.end()) order.push_back(std::size_t(low - boxes.begin()));
+        if (high != boxes.end()) order.push_back(std::size_t(high - boxes.begin()));
+    }
+    for (std::size_t i = 0; i < boxes.size(); ++i) order.push_back(i);
+    return order;
+}
+
 }  // namespace
 
 Bounds bounds(const Scene& scene) {
-    Bounds box;
     std::vector<std::optional<Corners>> corners(scene.meshes.size());
+    std::vector<Bounds> boxes;  // around the instances, not tight
     for (const Instance& instance : scene.instances) {
-        const Mesh& mesh = scene.meshes[instance.mesh];
-        if (mesh.triangles.empty()) continue;
         auto& known = corners[instance.mesh];
-        if (!known) known.emplace(mesh);
-        // Of many instances few reach further than those before.
-        if (contains(box, transformed(known->box, instance.transform))) continue;
-        for (std::size_t i = 0; i < known->used.size(); ++i)
-            if (known->used[i]) box.extend(Vec3(mesh.positions[i]) * instance.transform);
+        if (!known) known.emplace(scene.meshes[instance.mesh]);
+        const bool empty = scene.meshes[instance.mesh].triangles.empty();
+        boxes.push_back(empty ? Bounds() : transformed(known->box, instance.transform));
+    }
+    Bounds box;
+    for (const std::size_t index : far_ones_first(boxes)) {
+        const Instance& instance = scene.instances[index];
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        if (mesh.triangles.empty() || contains(box, boxes[index])) continue;
+        const Corners& known = *corners[instance.mesh];
+        for (std::size_t i = 0; i < known.used.size(); ++i)
+            if (known.used[i]) box.extend(Vec3(mesh.positions[i]) * instance.transform);
     }
     for (const Sphere& sphere : scene.spheres) {
         box.extend(sphere.center - Vec3(sphere.radius));

@@ -249,6 +249,7 @@ Image render(const NormalisedScene& normalised, const RenderOptions& options, co
         const View view = view_of(scene.cameras[scene.camera], options.width, options.height);
         const Job job = {world, view, options, pixel_samples(options.samples),
                          interiors_at(world, view.location)};
+        if (watch.progress) watch.progress(0);
         render_tiles(job, watch, image);
     });
     return image;

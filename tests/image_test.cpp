@@ -136,6 +136,25 @@ TEST_CASE("the sRGB curve has the values of IEC 61966-2-1") {
     CHECK(linear_to_srgb(2) == Approx(1.353256));
 }
 
+TEST_CASE("image, 8-bit samples are the encoded values to the nearest") {
+    constexpr int side = 512;
+    Image image(side, side);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        const float x = float(i) / float(image.pixels.size() - 1);
+        image.pixels[i] = {x * x * x, x * 1.02F - 0.01F, float(i % 256) / 255};
+        image.pixels[i].z = std::nextafter(srgb_to_linear(image.pixels[i].z + 0.5F / 255), x * 2);
+    }
+    const Raster raster = decode_image(encode_png(image), "ramp");
+    REQUIRE(raster.data.size() == image.pixels.size() * 3);
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < raster.data.size(); ++i) {
+        const float value = image.pixels[i / 3][int(i % 3)];
+        const float encoded = std::clamp(linear_to_srgb(value), 0.0F, 1.0F);
+        wrong += int(raster.data[i]) != int(encoded * 255 + 0.5F);
+    }
+    CHECK(wrong == 0);
+}
+
 TEST_CASE("decoding and encoding sRGB returns every 16-bit value") {
     int wrong = 0;
     for (int i = 0; i < 65536; ++i) {

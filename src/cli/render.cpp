@@ -34,23 +34,24 @@ int render(const Context& context) {
     const NormalisedScene scene = normalise(std::move(imported.scene), options);
     const double import_seconds = import_time.seconds();
 
-    const Stopwatch render_time;
-    const Image image = render_scene(context, scene, options, "render");
-    const double render_seconds = render_time.seconds();
+    const auto& [image, build_seconds, render_seconds] =
+        render_scene(context, scene, options, "render");
     if (context.stop.stop_requested()) throw Error(Failure::interrupted, "", "interrupted");
     save_image(output, image, {arguments.bits});
 
     if (arguments.json) {
-        context.console.result(
-            json_text({{"version", 1},
-                       {"file", output.string()},
-                       {"width", image.width},
-                       {"height", image.height},
-                       {"seconds", {{"import", import_seconds}, {"render", render_seconds}}},
-                       {"losses", losses_json(imported.losses)}}));
+        context.console.result(json_text(
+            {{"version", 1},
+             {"file", output.string()},
+             {"width", image.width},
+             {"height", image.height},
+             {"seconds",
+              {{"import", import_seconds}, {"build", build_seconds}, {"render", render_seconds}}},
+             {"losses", losses_json(imported.losses)}}));
     } else if (!arguments.quiet) {
         context.console.result(fmt::format("{}: {} x {} pixels in {:.2f} s\n", output.string(),
-                                           image.width, image.height, render_seconds));
+                                           image.width, image.height,
+                                           build_seconds + render_seconds));
     }
     return exit_success;
 }

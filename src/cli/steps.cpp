@@ -91,13 +91,22 @@ double sample_count(const RenderOptions& options) {
     return double(options.width) * options.height * grid;
 }
 
-Image render_scene(const Context& context, const NormalisedScene& scene,
-                   const RenderOptions& options, const std::string& name) {
-    const Watch watch = {context.console.progress(name, sample_count(options), " samples"),
-                         context.stop};
-    Image image = render(scene, options, watch);
+Rendered render_scene(const Context& context, const NormalisedScene& scene,
+                      const RenderOptions& options, const std::string& name) {
+    const auto show = context.console.progress(name, sample_count(options), " samples");
+    Rendered result;
+    Stopwatch time;
+    const auto progress = [&](double done) {
+        if (done == 0) {
+            result.build_seconds = time.seconds();
+            time = {};
+        }
+        if (show) show(done);
+    };
+    result.image = render(scene, options, {progress, context.stop});
+    result.render_seconds = time.seconds();
     context.console.clear_progress();
-    return image;
+    return result;
 }
 
 nlohmann::ordered_json losses_json(const Losses& losses) {

@@ -36,9 +36,15 @@ std::string stem_of(const Arguments& arguments);
 /// The inputs as the user named them, for messages: "chair.glb studio.toml".
 std::string source_of(const Arguments& arguments, const std::vector<std::filesystem::path>& inputs);
 
-/// Rendering with the number of threads of the command line, under a progress bar.
-Image render_scene(const Context& context, const NormalisedScene& scene,
-                   const RenderOptions& options, const std::string& name);
+/// A picture, and the wall time of what made it: the search trees, then the picture itself.
+struct Rendered {
+    Image image = {};
+    double build_seconds = 0, render_seconds = 0;
+};
+
+/// Renders with the number of threads of the command line, under a progress bar.
+Rendered render_scene(const Context& context, const NormalisedScene& scene,
+                      const RenderOptions& options, const std::string& name);
 
 /// Samples in a whole picture, for the rate of the progress bar.
 double sample_count(const RenderOptions& options);

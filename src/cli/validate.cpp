@@ -117,11 +117,11 @@ void run_case(const Context& context, const Job& job, const fs::path& report, Ca
     report_losses(context, {result.losses.begin() + std::ptrdiff_t(imported.losses.size()),
                             result.losses.end()});
 
-    const Stopwatch render_time;
     RenderOptions own = options;
     own.threads = job.threads;
-    result.test = render_scene(context, scene, own, "render " + job.name);
-    result.seconds["render"] = render_time.seconds();
+    Rendered rendered = render_scene(context, scene, own, "render " + job.name);
+    result.test = std::move(rendered.image);
+    result.seconds["render"] = rendered.build_seconds + rendered.render_seconds;
     scene = {};
     save_image(folder / "ours.exr", result.test);
     result.files["test"] = in_folder(job, "ours.exr");
