@@ -23,7 +23,7 @@ struct Codec {
     std::size_t consumed = 0;
     std::vector<std::byte> output = {};
     std::vector<png_bytep> rows = {};
-    Raster raster = {};
+    Raster raster = {};  // that is read
 
     explicit Codec(bool read) : reading(read) {
         png = read ? png_create_read_struct(PNG_LIBPNG_VER_STRING, this, on_error, on_warning)
@@ -59,12 +59,13 @@ struct Codec {
     static void flush(png_structp) {}
 };
 
-void point_rows(Codec& codec) {
-    const std::size_t stride = std::size_t(codec.raster.width) *
-                               std::size_t(codec.raster.channels) * std::size_t(codec.raster.depth);
-    codec.rows.resize(std::size_t(codec.raster.height));
-    for (std::size_t y = 0; y < codec.rows.size(); ++y)
-        codec.rows[y] = reinterpret_cast<png_bytep>(codec.raster.data.data() + y * stride);
+// libpng takes rows that it may write to; what is written from is only read.
+void point_rows(Codec& codec, const Raster& raster) {
+    const std::size_t stride =
+        std::size_t(raster.width) * std::size_t(raster.channels) * std::size_t(raster.depth);
+    auto* const first = reinterpret_cast<png_bytep>(const_cast<std::byte*>(raster.data.data()));
+    codec.rows.resize(std::size_t(raster.height));
+    for (std::size_t y = 0; y < codec.rows.size(); ++y) codec.rows[y] = first + y * stride;
 }
 
 // Reads the header and makes room. False when the picture is too large.
@@ -86,7 +87,7 @@ bool prepare_to_read(Codec& codec) {
         raster.texels() > max_image_pixels)
         return false;
     raster.data.resize(raster.texels() * std::size_t(raster.channels) * std::size_t(raster.depth));
-    point_rows(codec);
+    point_rows(codec, raster);
     return true;
 }
 
@@ -101,11 +102,10 @@ void read_all(Codec& codec) {
     png_read_end(codec.png, nullptr);
 }
 
-void write_all(Codec& codec, bool srgb) {
+void write_all(Codec& codec, const Raster& raster, bool srgb) {
     if (setjmp(png_jmpbuf(codec.png)) != 0) return;
     constexpr std::array<int, 4> color_types = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA,
                                                 PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGB_ALPHA};
-    const Raster& raster = codec.raster;
     png_set_write_fn(codec.png, &codec, Codec::write, Codec::flush);
     png_set_error_fn(codec.png, &codec, Codec::on_error, Codec::on_warning);
     // Of what the Paeth filter leaves of a rendered picture, runs alone make files as small as a
@@ -142,9 +142,8 @@ Decoded decode_png(std::span<const std::byte> file) {
 Encoded encode_png(const Raster& raster, bool srgb) {
     Codec codec(false);
     if (codec.info == nullptr) return {{}, "out of memory"};
-    codec.raster = raster;
-    point_rows(codec);
-    write_all(codec, srgb);
+    point_rows(codec, raster);
+    write_all(codec, raster, srgb);
     return {std::move(codec.output), codec.problem};
 }
 
