@@ -1,6 +1,6 @@
 #include "defect_kinds.h"
 
-#include "shadowless.h"
+#include "variation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,15 +66,11 @@ Index main_material(const Stage& stage) {
     return best;
 }
 
-// The mesh that most pixels show.
-std::size_t main_instance(const Stage& stage) {
-    const auto end = stage.pixels.begin() + std::ptrdiff_t(stage.scene.scene.instances.size());
-    return std::size_t(std::max_element(stage.pixels.begin(), end) - stage.pixels.begin());
-}
-
 bool has_mesh(const Stage& stage) {
-    return !stage.scene.scene.instances.empty() &&
-           stage.pixels[main_instance(stage)] > enough(stage);
+    const auto& instances = stage.scene.scene.instances;
+    std::size_t sum = 0;
+    for (std::size_t i = 0; i < instances.size(); ++i) sum += stage.pixels[i];
+    return sum > enough(stage);
 }
 
 bool has_smooth_mesh(const Stage& stage) {
@@ -161,7 +157,7 @@ std::function<Image(const Stage&)> each_light(void (*change)(Light&)) {
     });
 }
 
-void scale_pigment(Material& m, float factor) {
+void scale_pigment(Material& m, const Color& factor) {
     m.color *= factor;
     if (auto* checker = std::get_if<Checker>(&m.pattern))
         for (Color& color : checker->colors) color *= factor;
@@ -194,18 +190,31 @@ std::function<Image(const Stage&)> looked_up(double a, double b, double c, doubl
     });
 }
 
-void turn_main_mesh(const Stage& stage, Scene& scene) {
-    Matrix turn;
-    turn.setAxisAngle(Vec3(0, 1, 0), radians(1));
-    Matrix& transform = scene.instances[main_instance(stage)].transform;
-    transform = turn * transform;
+// Every mesh, about the origin of the user's world.
+void place_meshes(const Stage& stage, Scene& scene, const Matrix& change) {
+    const Vec3 origin = stage.scene.offset * -stage.scene.factor;
+    Matrix there, back;
+    there.setTranslation(-origin);
+    back.setTranslation(origin);
+    for (Instance& i : scene.instances) i.transform = i.transform * there * change * back;
 }
 
-void mirror_main_mesh(const Stage& stage, Scene& scene) {
+void turn_meshes(const Stage& stage, Scene& scene) {
+    Matrix turn;
+    turn.setAxisAngle(Vec3(0, 1, 0), radians(1));
+    place_meshes(stage, scene, turn);
+}
+
+void tip_meshes(const Stage& stage, Scene& scene) {
+    Matrix turn;
+    turn.setAxisAngle(Vec3(1, 0, 0), -radians(0.6));
+    place_meshes(stage, scene, turn);
+}
+
+void mirror_meshes(const Stage& stage, Scene& scene) {
     Matrix mirror;
     mirror.setScale(Vec3(-1, 1, 1));
-    Matrix& transform = scene.instances[main_instance(stage)].transform;
-    transform = mirror * transform;
+    place_meshes(stage, scene, mirror);
 }
 
 Image traced_twice(const Stage& stage) {
@@ -214,71 +223,8 @@ Image traced_twice(const Stage& stage) {
     return render(stage.scene, options);
 }
 
-Image shadowless(const Stage& stage) { return render_without_shadows(stage.scene, stage.options); }
-
-// ---- defects of the picture -------------------------------------------------------------------
-
-// The picture with `more` pixels in each row and column, as large as the others.
-Image wider(const Stage& stage, int more) {
-    NormalisedScene scene = stage.scene;
-    RenderOptions options = stage.options;
-    options.width += more;
-    options.height += more;
-    Camera& camera = scene.scene.cameras[scene.scene.camera];
-    const double factor = camera.side == Camera::Side::horizontal
-                              ? double(options.width) / stage.options.width
-                              : double(options.height) / stage.options.height;
-    camera.fov = 2 * std::atan(std::tan(camera.fov / 2) * factor);
-    camera.extent *= factor;
-    return render(scene, options);
-}
-
-Image cut(const Image& image, int left, int top, int width, int height) {
-    Image result(width, height);
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) result.at(x, y) = image.at(x + left, y + top);
-    return result;
-}
-
-// A picture of one pixel more has its pixels' centres half a pixel off.
-Image shifted_by_half(const Stage& stage) {
-    return cut(wider(stage, 1), 1, 1, stage.options.width, stage.options.height);
-}
-
-Image shifted_by_one(const Stage& stage) {
-    return cut(wider(stage, 2), 2, 1, stage.options.width, stage.options.height);
-}
-
-std::function<Image(const Stage&)> rearranged(bool across, bool along) {
-    return [=](const Stage& stage) {
-        Image result = stage.picture;
-        for (int y = 0; y < result.height; ++y)
-            for (int x = 0; x < result.width; ++x)
-                result.at(x, y) = stage.picture.at(across ? result.width - 1 - x : x,
-                                                   along ? result.height - 1 - y : y);
-        return result;
-    };
-}
-
-std::function<Image(const Stage&)> each_pixel(Color (*change)(const Color&)) {
-    return [=](const Stage& stage) {
-        Image result = stage.picture;
-        for (Color& color : result.pixels) color = change(color);
-        return result;
-    };
-}
-
-Color each_channel(const Color& c, float (*change)(float)) {
-    const auto shown = [&](float v) { return change(std::clamp(v, 0.F, 1.F)); };
-    return {shown(c.x), shown(c.y), shown(c.z)};
-}
-
-Color exchanged(const Color& c) { return {c.z, c.y, c.x}; }
-Color exposed(const Color& c) { return c * float(std::exp2(0.1)); }
-Color not_encoded(const Color& c) { return each_channel(c, srgb_to_linear); }
-Color encoded_twice(const Color& c) { return each_channel(c, linear_to_srgb); }
-Color by_power(const Color& c) {
-    return each_channel(c, [](float v) { return srgb_to_linear(std::pow(v, 1 / 2.2F)); });
+Image shadowless(const Stage& stage) {
+    return render_variation(stage.scene, stage.options, {.shadows = false});
 }
 
 // ---- the list ---------------------------------------------------------------------------------
@@ -350,7 +296,13 @@ std::vector<Defect> of_surfaces() {
          {"albedo"},
          always,
          changed([](const Stage& stage, Scene& s) {
-             scale_pigment(s.materials[main_material(stage)], 0.6F / 0.7F);
+             scale_pigment(s.materials[main_material(stage)], Color(0.6F / 0.7F));
+         })},
+        {"albedo of a material redder",
+         {"albedo"},
+         always,
+         changed([](const Stage& stage, Scene& s) {
+             scale_pigment(s.materials[main_material(stage)], {1.05F, 0.95F, 0.9F});
          })},
         {"texture mirrored", {"texture"}, has_texture, looked_up(-1, 1, 1, 0, false)},
         {"texture upside down", {"texture"}, has_texture, looked_up(1, -1, 0, 1, false)},
@@ -365,28 +317,19 @@ std::vector<Defect> of_surfaces() {
 }
 
 std::vector<Defect> of_geometry() {
-    return {{"field of view 1 degree wider", {"fov"}, always, changed([](const Stage&, Scene& s) {
-                 s.cameras[s.camera].fov += radians(1);
-             })},
-            {"object missing", {"object"}, has_object, changed([](const Stage& stage, Scene& s) {
-                 remove_object(s, middling_object(stage));
-             })},
-            {"model turned by 1 degree", {"rotation"}, has_mesh, changed(turn_main_mesh)},
-            {"model mirrored", {"handedness"}, has_mesh, changed(mirror_main_mesh)}};
-}
-
-std::vector<Defect> of_pictures() {
-    return {{"shifted by half a pixel", {"shift"}, always, shifted_by_half},
-            {"shifted by one pixel", {"shift"}, always, shifted_by_one},
-            {"mirrored", {"mirror"}, always, rearranged(true, false)},
-            {"upside down", {"flip"}, always, rearranged(false, true)},
-            {"turned by 180 degrees", {"turn"}, always, rearranged(true, true)},
-            {"red and blue exchanged", {"channels"}, always, each_pixel(exchanged)},
-            {"exposure +0.1 EV", {"gain"}, always, each_pixel(exposed)},
-            {"gamma 2.2 for sRGB", {"gamma_22"}, always, each_pixel(by_power)},
-            // What one picture has too much the other lacks.
-            {"sRGB encoding missing", {"double_srgb"}, always, each_pixel(not_encoded)},
-            {"sRGB encoding doubled", {"no_srgb"}, always, each_pixel(encoded_twice)}};
+    return {
+        {"field of view 1 degree wider", {"fov"}, always, changed([](const Stage&, Scene& s) {
+             s.cameras[s.camera].fov += radians(1);
+         })},
+        {"field of view 0.3 degrees narrower", {"fov"}, always, changed([](const Stage&, Scene& s) {
+             s.cameras[s.camera].fov -= radians(0.3);
+         })},
+        {"object missing", {"object"}, has_object, changed([](const Stage& stage, Scene& s) {
+             remove_object(s, middling_object(stage));
+         })},
+        {"models turned by 1 degree", {"rotation"}, has_mesh, changed(turn_meshes)},
+        {"models tipped by 0.6 degrees", {"rotation"}, has_mesh, changed(tip_meshes)},
+        {"models mirrored", {"handedness"}, has_mesh, changed(mirror_meshes)}};
 }
 
 }  // namespace

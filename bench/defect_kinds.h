@@ -32,6 +32,9 @@ struct Defect {
 
 Stage make_stage(const std::string& name, NormalisedScene scene, const RenderOptions& options);
 
+/// Those of the picture as a whole.
+std::vector<Defect> of_pictures();
+
 /// In the order of the table.
 std::vector<Defect> all_defects();
 

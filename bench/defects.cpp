@@ -1,7 +1,8 @@
 // The defect study of docs/validation.md: what the limits catch, what they let pass, and how often
 // the diagnosis names the cause.
 //
-//   penumbra-defects [--size WxH] [--scene TEXT] [--defect TEXT] [--write FILE] SCENE...
+//   penumbra-defects [--size WxH] [--scene TEXT] [--defect TEXT] [--save FOLDER] [--write FILE]
+//                    SCENE...
 //
 // Every scene is rendered as it is and with each defect that it can show; the latter is what
 // another renderer with that fault would give. Prints the tables, or puts them between the markers

@@ -144,7 +144,7 @@ void add_light(const World& world, const SourceGroup& light, const Surfaces& sur
     work.blockers.find(world, work.points, light);
     work.shaded.clear();
     for (std::size_t index = 0; index < work.blocks.size(); ++index) {
-        if (work.blockers.groups[index].any)
+        if (world.shadows && work.blockers.groups[index].any)
             work.shaded.push_back(index);
         else
             add_open_block(light, surfaces, work.blocks[index], work.arrival, radiance);

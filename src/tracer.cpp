@@ -3,6 +3,7 @@
 #include "lighting.h"
 #include "scatter.h"
 #include "shapes.h"
+#include "variation.h"
 #include "world.h"
 
 #include <tbb/blocked_range.h>
@@ -27,13 +28,14 @@ struct PixelSample {
 };
 
 // POV-Ray's fixed grid (`+AM1 +R<n> +A0.0 -J`): n x n and the centre once more.
-std::vector<PixelSample> pixel_samples(int n) {
-    if (n <= 1) return {{}};
+std::vector<PixelSample> pixel_samples(int n, const Variation& variation) {
+    const double x = variation.dx, y = variation.dy;
+    if (n <= 1) return {{x, y}};
     const double weight = 1.0 / (n * n + 1);
-    std::vector<PixelSample> samples = {{0, 0, weight}};
+    std::vector<PixelSample> samples = {{x, y, weight}};
     for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i)
-            samples.push_back({(i + 0.5) / n - 0.5, (j + 0.5) / n - 0.5, weight});
+            samples.push_back({x + (i + 0.5) / n - 0.5, y + (j + 0.5) / n - 0.5, weight});
     return samples;
 }
 
@@ -241,13 +243,19 @@ void render_tiles(const Job& job, const Watch& watch, Image& image) {
 }  // namespace
 
 Image render(const NormalisedScene& normalised, const RenderOptions& options, const Watch& watch) {
+    return render_variation(normalised, options, {}, watch);
+}
+
+Image render_variation(const NormalisedScene& normalised, const RenderOptions& options,
+                       const Variation& variation, const Watch& watch) {
     const Scene& scene = normalised.scene;
     Image image(options.width, options.height);
     tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
     arena.execute([&] {
-        const World world(scene);
+        World world(scene);
+        world.shadows = variation.shadows;
         const View view = view_of(scene.cameras[scene.camera], options.width, options.height);
-        const Job job = {world, view, options, pixel_samples(options.samples),
+        const Job job = {world, view, options, pixel_samples(options.samples, variation),
                          interiors_at(world, view.location)};
         if (watch.progress) watch.progress(0);
         render_tiles(job, watch, image);

@@ -64,6 +64,7 @@ struct World {
     std::vector<PreparedPlane> planes = {};
     std::vector<Index> translucent_shapes = {};  ///< spheres and planes, as objects
     bool translucent = false;                    ///< any object lets light through
+    bool shadows = true;                         ///< else nothing hides a source
 
     explicit World(const Scene& given);
 

@@ -56,9 +56,11 @@ TEST_CASE("Figures come in a fixed order with their limits") {
     const Comparison result = compare(disc(32, 32), disc(32, 32));
     std::vector<std::string> names;
     for (const Metric& metric : result.metrics) names.push_back(metric.name);
-    CHECK(names == std::vector<std::string>{"parity", "exactness", "max_error", "rmse", "psnr_db",
-                                            "ssim", "ssim_tile", "flip", "flip_p99", "flip_tile",
-                                            "bias", "coverage"});
+    CHECK(joined(names) == "parity\nexactness\nmax_error\nrmse\npsnr_db\nssim\nssim_tile\nflip\n"
+                           "flip_p99\nflip_tile\nbias\ncoverage\noutliers\nparity_covered\n"
+                           "rmse_covered\npsnr_db_covered\nssim_covered\nflip_covered\n"
+                           "bias_covered\nedges\nparity_edges\nflip_edges\nparity_inside\n"
+                           "hdr_flip\n");
     CHECK(result.metrics[0].limit == 0.995);
     CHECK(result.metrics[0].at_least);
     CHECK_FALSE(result.metrics[1].limit);
@@ -293,6 +295,21 @@ TEST_CASE("A result close to its limit passes with a warning") {
     CHECK(compare(reference, reference, options).verdict == Verdict::pass);
 }
 
+TEST_CASE("The warn band is what the limits say") {
+    const Image reference = disc(100, 100);
+    Image test = reference;
+    for (int x = 0; x < 9; ++x) test.at(40 + x, 40) = Color(1);  // parity 0.9991
+    CompareOptions options;
+    options.limits = only("parity", 0.998);
+    options.limits.warn_band = 0.6;
+    CHECK(compare(test, reference, options).verdict == Verdict::warn);
+    CHECK(has(joined(compare(test, reference, options).diagnosis),
+              "parity 0.9991 is within 60 % of its limit 0.998\n"));
+    options.limits = only("parity", 0.9991);
+    options.limits.warn_band = 0;
+    CHECK(compare(test, reference, options).verdict == Verdict::pass);
+}
+
 TEST_CASE("Profiles go from strict to similar") {
     CHECK(profile_limits("equivalent").limits.at("flip_tile") == 0.045);
     CHECK(profile_limits("strict").limits.at("psnr_db") == 48);
@@ -341,7 +358,9 @@ TEST_CASE("A limit for an unknown metric is refused") {
     options.limits = only("psnr", 40);
     CHECK(test::message_of([&] { compare(disc(8, 8), disc(8, 8), options); }) ==
           "unknown metric 'psnr' (known: parity, exactness, max_error, rmse, psnr_db, ssim, "
-          "ssim_tile, flip, flip_p99, flip_tile, bias, coverage)");
+          "ssim_tile, flip, flip_p99, flip_tile, bias, coverage, outliers, parity_covered, "
+          "rmse_covered, psnr_db_covered, ssim_covered, flip_covered, bias_covered, edges, "
+          "parity_edges, flip_edges, parity_inside, hdr_flip)");
 }
 
 TEST_CASE("The difference picture is the magnified magnitude") {

@@ -250,3 +250,91 @@ TEST_CASE("FLIP clamps what a display cannot show") {
         penumbra::compare(constant(32, 32, Color(-3)), constant(32, 32, Color(0))).value("flip") ==
         0);
 }
+
+namespace {
+
+// The ACES curve of the HDR-FLIP papers.
+double aces(double x) {
+    return (0.36 * 2.51 * x * x + 0.6 * 0.03 * x) / (0.36 * 2.43 * x * x + 0.6 * 0.59 * x + 0.14);
+}
+
+// Where it is 0.85, by bisection.
+double inverse_of_085() {
+    double low = 0, high = 100;
+    for (int i = 0; i < 200; ++i) (aces((low + high) / 2) < 0.85 ? low : high) = (low + high) / 2;
+    return low;
+}
+
+Image seen_at(const Image& image, double exposure) {
+    Image result = image;
+    for (Color& c : result.pixels)
+        for (int i = 0; i < 3; ++i)
+            c[i] = float(
+                std::clamp(aces(std::exp2(exposure) * std::max(0.0, double(c[i]))), 0.0, 1.0));
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("FLIP does not see the rounding of one picture to 8 bits") {
+    // Dark enough that FLIP of the rounding alone is beyond the limit of a profile.
+    Image fine = pattern(60, 40, 1);
+    for (Color& c : fine.pixels) c *= 0.02F;
+    const auto rounded = [](Image image) {
+        for (Color& c : image.pixels)
+            for (int i = 0; i < 3; ++i)
+                c[i] = penumbra::srgb_to_linear(std::round(penumbra::linear_to_srgb(c[i]) * 255) /
+                                                255);
+        return image;
+    };
+    const Image coarse = rounded(fine);
+    CHECK(penumbra::compare(fine, coarse).value("flip") == 0);
+    CHECK(penumbra::compare(coarse, fine).value("flip") == 0);
+    // More than rounding is seen, and so is as little between two pictures of the same kind.
+    Image brighter = fine;
+    for (Color& c : brighter.pixels) c *= 1.05F;
+    CHECK(penumbra::compare(brighter, coarse).value("flip") > 0.01);
+    Image slightly = fine;
+    for (Color& c : slightly.pixels) c *= 1.001F;
+    CHECK(penumbra::compare(slightly, fine).value("flip") > 0);
+}
+
+TEST_CASE("HDR-FLIP is the worst FLIP over the exposures of the reference") {
+    const int w = 40, h = 30;
+    Image reference = pattern(w, h, 1), test = pattern(w, h, 5);
+    for (Color& c : reference.pixels) c *= c * 30;
+    for (Color& c : test.pixels) c *= c * 33;
+    std::vector<double> luminances;
+    for (const Color& c : reference.pixels)
+        luminances.push_back(0.2126 * double(c.x) + 0.7152 * double(c.y) + 0.0722 * double(c.z));
+    std::ranges::sort(luminances);
+    const double first = std::log2(inverse_of_085() / luminances.back());
+    const double last = std::log2(inverse_of_085() / luminances[(luminances.size() - 1) / 2]);
+    const int count = std::max(2, int(std::ceil(last - first)));
+    Plane worst(reference.pixels.size());
+    for (int i = 0; i < count; ++i) {
+        const double exposure = first + i * (last - first) / (count - 1);
+        const Plane errors = flip(seen_at(test, exposure), seen_at(reference, exposure));
+        for (std::size_t k = 0; k < errors.size(); ++k) worst[k] = std::max(worst[k], errors[k]);
+    }
+    double mean = 0;
+    for (const double error : worst) mean += error / double(worst.size());
+    REQUIRE(count > 2);
+    CHECK(penumbra::compare(test, reference).value("hdr_flip") == Approx(mean).margin(1e-5));
+}
+
+TEST_CASE("HDR-FLIP is measured where something is brighter than white or a limit asks") {
+    const Image dark = pattern(40, 30, 1);
+    CHECK(std::isnan(penumbra::compare(dark, dark).value("hdr_flip")));
+    penumbra::CompareOptions options;
+    options.limits.limits["hdr_flip"] = 0.1;
+    CHECK(penumbra::compare(dark, dark, options).value("hdr_flip") == 0);
+    CHECK(penumbra::compare(dark, dark, options).verdict == penumbra::Verdict::pass);
+    Image bright = dark;
+    for (int x = 0; x < 40; ++x) bright.at(x, 0) = Color(1.5F);
+    CHECK(penumbra::compare(dark, bright).value("hdr_flip") > 0);
+    // LDR-FLIP cannot tell 4 from 8, HDR-FLIP can.
+    const Image four = constant(32, 32, Color(4)), eight = constant(32, 32, Color(8));
+    CHECK(penumbra::compare(four, eight).value("flip") == 0);
+    CHECK(penumbra::compare(four, eight).value("hdr_flip") > 0.1);
+}

@@ -1,4 +1,4 @@
-// Whether two pictures can be compared, where they differ, and what would explain it.
+// Where two pictures differ, and what would explain it as far as the pictures alone tell.
 #include "metrics.h"
 
 #include <fmt/format.h>
@@ -6,213 +6,292 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <map>
+#include <iterator>
 
 namespace penumbra::metrics {
 namespace {
 
-bool finite(const Color& c) {
-    return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
-}
+// What the suppositions look at: linear and encoded, and how far apart the encoded ones are.
+struct Evidence {
+    const Image &test, &reference;
+    cv::Mat a, b;
+    double before = 0;
 
-// "" when all pixels of the picture called `name` are finite.
-std::string not_finite(const Image& image, const std::string& name) {
-    std::size_t count = 0, first = 0;
-    for (std::size_t i = image.pixels.size(); i-- > 0;) {
-        if (finite(image.pixels[i])) continue;
-        ++count;
-        first = i;
-    }
-    if (count == 0) return "";
-    const auto width = std::size_t(image.width);
-    return fmt::format(
-        "{} of the {} picture's {} pixels are NaN or infinite, the first at ({}, {})", count, name,
-        image.pixels.size(), first % width, first / width);
-}
-
-bool well_formed(const Image& image) {
-    return image.width > 0 && image.height > 0 &&
-           image.pixels.size() == std::size_t(image.width) * std::size_t(image.height);
-}
-
-std::array<int, 3> bytes(const cv::Vec3f& c) {
-    return {cvRound(c[0] * 255), cvRound(c[1] * 255), cvRound(c[2] * 255)};
-}
-
-// The colour that most pixels of the border have, to 8 bits.
-cv::Vec3f border_color(const cv::Mat& image) {
-    std::map<std::array<int, 3>, int> count;
-    for (int x = 0; x < image.cols; ++x) {
-        ++count[bytes(image.at<cv::Vec3f>(0, x))];
-        ++count[bytes(image.at<cv::Vec3f>(image.rows - 1, x))];
-    }
-    for (int y = 0; y < image.rows; ++y) {
-        ++count[bytes(image.at<cv::Vec3f>(y, 0))];
-        ++count[bytes(image.at<cv::Vec3f>(y, image.cols - 1))];
-    }
-    const auto by_count = [](const auto& entry) { return entry.second; };
-    const auto most = std::ranges::max_element(count, {}, by_count)->first;
-    return {float(most[0]) / 255, float(most[1]) / 255, float(most[2]) / 255};
-}
-
-double mean_square(const cv::Mat& a, const cv::Mat& b) {
-    const double distance = cv::norm(a, b, cv::NORM_L2);
-    return distance * distance / (3 * double(a.total()));
-}
-
-// What one explanation would leave of the difference, as a fraction of its mean square.
-struct Cause {
-    double left = 1;
-    std::string sentence = {};
+    double left(const cv::Mat& changed) const { return mean_square(changed, b) / before; }
 };
 
-cv::Mat mapped(const cv::Mat& image, const std::function<float(float)>& map) {
-    cv::Mat result(image.size(), image.type());
-    each_row(image.rows, [&](int y) {
-        const auto* const from = image.ptr<float>(y);
-        std::transform(from, from + 3 * image.cols, result.ptr<float>(y), map);
-    });
-    return result;
+// ---- geometry ---------------------------------------------------------------------------------
+
+// Never -0, which would show.
+double to_half(double pixels) { return std::round(2 * pixels) / 2 + 0.0; }
+
+// Of a displacement by whole pixels; over the part that both pictures show.
+double left_by_shift(const Evidence& e, int dx, int dy) {
+    const cv::Size size(e.a.cols - std::abs(dx), e.a.rows - std::abs(dy));
+    const cv::Rect to({std::max(dx, 0), std::max(dy, 0)}, size);
+    const cv::Rect from({std::max(-dx, 0), std::max(-dy, 0)}, size);
+    // The same part of the picture without the displacement is what it is held against.
+    const double before = mean_square(e.a(to), e.b(to));
+    return before > 0 ? mean_square(e.a(to), e.b(from)) / before : 1;
 }
 
-// The displacement within +-2 pixels that explains most.
-Cause best_shift(const cv::Mat& test, const cv::Mat& reference) {
-    Cause best;
-    if (test.cols < 8 || test.rows < 8) return best;
+Finding shift_by(double dx, double dy, double left) {
+    return {left, "shift",
+            fmt::format("the test picture is shifted by ({:+.2g}, {:+.2g}) pixels", dx, dy)};
+}
+
+// By whole pixels, within two.
+Finding whole_shift(const Evidence& e) {
+    Finding best;
+    if (e.a.cols < 8 || e.a.rows < 8) return best;
     for (int dy = -2; dy <= 2; ++dy) {
         for (int dx = -2; dx <= 2; ++dx) {
-            const cv::Size size(test.cols - std::abs(dx), test.rows - std::abs(dy));
-            const cv::Rect to({std::max(dx, 0), std::max(dy, 0)}, size);
-            const cv::Rect from({std::max(-dx, 0), std::max(-dy, 0)}, size);
-            // The same part of the picture without the displacement is what it is held against.
-            const double before = mean_square(test(to), reference(to));
-            const double left = before > 0 ? mean_square(test(to), reference(from)) / before : 1;
-            if (left < best.left)
-                best = {left,
-                        fmt::format("the test picture is shifted by ({:+}, {:+}) pixels", dx, dy)};
+            const double left = left_by_shift(e, dx, dy);
+            if (left < best.left) best = shift_by(dx, dy, left);
         }
     }
     return best;
 }
 
-// The brightness, one factor of the linear values, that explains most.
-Cause best_gain(const Image& test, const Image& reference, double before) {
-    double both = 0, own = 0;
-    for (std::size_t i = 0; i < test.pixels.size(); ++i) {
-        both += double(test.pixels[i].dot(reference.pixels[i]));
-        own += double(test.pixels[i].dot(test.pixels[i]));
+Finding fractional_shift(const Registration& found) {
+    const double dx = to_half(found.motion.dx), dy = to_half(found.motion.dy);
+    const double off = std::hypot(found.motion.dx - dx, found.motion.dy - dy);
+    if (dx == 0 && dy == 0 && off < 0.15) return {};
+    return off < 0.15 ? shift_by(dx, dy, found.left)
+                      : shift_by(found.motion.dx, found.motion.dy, found.left);
+}
+
+Finding zoomed(const Registration& found) {
+    const double percent = 100 * (1 / (1 - found.motion.zoom) - 1);
+    return {found.left, "fov",
+            fmt::format("the test picture shows everything {:.2g} % {}, as with another field of "
+                        "view",
+                        std::abs(percent), percent > 0 ? "larger" : "smaller")};
+}
+
+Finding rolled(const Registration& found) {
+    const double angle = degrees(found.motion.roll);
+    return {found.left, "roll",
+            fmt::format("the test picture is turned by {:.2g} degrees {}", std::abs(angle),
+                        angle > 0 ? "clockwise" : "counter-clockwise")};
+}
+
+// Motions by fractions of a pixel, each kind alone.
+std::vector<Finding> motions(const Evidence& e) {
+    // All at once leave no more than any of them.
+    if (register_pictures(e.a, e.b, Moves::all).left > 0.4) return {};
+    return {fractional_shift(register_pictures(e.a, e.b, Moves::shift)),
+            zoomed(register_pictures(e.a, e.b, Moves::zoom)),
+            rolled(register_pictures(e.a, e.b, Moves::roll))};
+}
+
+std::vector<Finding> turned(const Evidence& e) {
+    const auto flipped = [&](int axes) {
+        cv::Mat result;
+        cv::flip(e.a, result, axes);
+        return e.left(result);
+    };
+    std::vector<Finding> result = {
+        {flipped(1), "mirror", "the test picture is mirrored left to right"},
+        {flipped(0), "flip", "the test picture is upside down"},
+        {flipped(-1), "turn", "the test picture is turned by 180 degrees"}};
+    if (e.a.cols != e.a.rows) return result;
+    for (const bool clockwise : {true, false}) {
+        cv::Mat quarter;
+        cv::rotate(e.a, quarter,
+                   clockwise ? cv::ROTATE_90_COUNTERCLOCKWISE : cv::ROTATE_90_CLOCKWISE);
+        result.push_back({e.left(quarter), "turn",
+                          fmt::format("the test picture is turned by 90 degrees {}",
+                                      clockwise ? "clockwise" : "counter-clockwise")});
     }
-    const double gain = both / own;
-    if (!(gain > 0) || !std::isfinite(gain)) return {};
-    Image scaled = test;
-    for (Color& color : scaled.pixels) color *= float(gain);
+    return result;
+}
+
+// ---- colours ----------------------------------------------------------------------------------
+
+Finding exchanged(const Evidence& e) {
+    constexpr const char* names[] = {"red", "green", "blue"};
+    Finding best;
+    std::array<int, 3> order = {0, 1, 2};
+    while (std::ranges::next_permutation(order).found) {
+        cv::Mat result(e.a.size(), e.a.type());
+        const std::array<int, 6> pairs = {order[0], 0, order[1], 1, order[2], 2};
+        cv::mixChannels(&e.a, 1, &result, 1, pairs.data(), 3);
+        const double left = e.left(result);
+        if (left >= best.left) continue;
+        best = {left, "channels",
+                fmt::format("the test picture has the channels {}, {}, {} where the reference has "
+                            "red, green, blue",
+                            names[std::ranges::find(order, 0) - order.begin()],
+                            names[std::ranges::find(order, 1) - order.begin()],
+                            names[std::ranges::find(order, 2) - order.begin()])};
+        for (std::size_t kept = 0; kept < 3; ++kept)
+            if (order[kept] == int(kept))
+                best.sentence = fmt::format("{} and {} are exchanged", names[kept == 0 ? 1 : 0],
+                                            names[kept == 2 ? 1 : 2]);
+    }
+    return best;
+}
+
+// The factor of a channel's linear values, or of all, that brings the test picture to the
+// reference; of values that a display shows in both.
+double gain_of(const Evidence& e, std::optional<int> channel) {
+    double both = 0, own = 0;
+    for (std::size_t i = 0; i < e.test.pixels.size(); ++i) {
+        for (int c = channel.value_or(0); c <= channel.value_or(2); ++c) {
+            const double t = double(e.test.pixels[i][c]), r = double(e.reference.pixels[i][c]);
+            if (t >= 1 || r >= 1) continue;
+            both += t * r;
+            own += t * t;
+        }
+    }
+    return both / own;
+}
+
+double left_by_gain(const Evidence& e, const std::array<double, 3>& gain) {
+    Image scaled = e.test;
+    for (Color& color : scaled.pixels)
+        color *= Color(float(gain[0]), float(gain[1]), float(gain[2]));
+    return e.left(encoded(scaled));
+}
+
+bool sane(double gain) { return gain > 0 && std::isfinite(gain); }
+
+Finding brighter(const Evidence& e) {
+    const double gain = gain_of(e, std::nullopt);
+    if (!sane(gain)) return {};
     const double percent = 100 * (1 / gain - 1);
-    return {mean_square(encoded(scaled), encoded(reference)) / before,
-            fmt::format("the test picture is {:.2g} % {}", std::abs(percent),
-                        percent > 0 ? "brighter" : "darker")};
+    return {left_by_gain(e, {gain, gain, gain}), "gain",
+            fmt::format("the test picture is {:.2g} % {} ({:+.2f} EV)", std::abs(percent),
+                        percent > 0 ? "brighter" : "darker", -std::log2(gain))};
+}
+
+Finding tinted(const Evidence& e) {
+    const std::array gain = {gain_of(e, 0), gain_of(e, 1), gain_of(e, 2)};
+    if (!std::ranges::all_of(gain, sane)) return {};
+    return {left_by_gain(e, gain), "tint",
+            fmt::format("the reference has {:.3g}, {:.3g} and {:.3g} times the red, green and blue "
+                        "of the test picture",
+                        gain[0], gain[1], gain[2])};
+}
+
+float power(float value, double exponent) {
+    return float(std::pow(double(std::clamp(value, 0.F, 1.F)), exponent));
+}
+
+// The encoded values as powers of one another.
+Finding other_gamma(const Evidence& e) {
+    double both = 0, own = 0;
+    for (int y = 0; y < e.a.rows; ++y) {
+        const auto *const a = e.a.ptr<float>(y), *const b = e.b.ptr<float>(y);
+        for (int x = 0; x < 3 * e.a.cols; ++x) {
+            if (a[x] < 0.02F || b[x] < 0.02F || a[x] > 0.98F || b[x] > 0.98F) continue;
+            // Errors of the logarithm count as those of the value.
+            const double s = std::log(double(a[x])), t = std::log(double(b[x]));
+            both += double(b[x] * b[x]) * s * t;
+            own += double(b[x] * b[x]) * s * s;
+        }
+    }
+    const double gamma = both / own;
+    if (!sane(gamma)) return {};
+    return {e.left(mapped(e.a, [&](float c) { return power(c, gamma); })), "gamma",
+            fmt::format("the test picture's values to the power of {:.3g} are the reference's: "
+                        "the gamma is another",
+                        gamma)};
+}
+
+std::vector<Finding> encodings(const Evidence& e) {
+    const auto by_power = [](const Image& image) {
+        return mapped(view(image), [](float c) { return power(c, 1 / 2.2); });
+    };
+    return {{e.left(mapped(e.a, linear_to_srgb)), "no_srgb",
+             "the test picture looks as if it lacked the sRGB encoding, or the reference as if it "
+             "were encoded twice"},
+            {e.left(mapped(e.a, srgb_to_linear)), "double_srgb",
+             "the test picture looks as if it were sRGB-encoded twice, or the reference as if it "
+             "lacked the encoding"},
+            {e.left(by_power(e.test)), "gamma_22",
+             "the reference looks as if it were encoded with a gamma of 2.2 instead of sRGB"},
+            {mean_square(e.a, by_power(e.reference)) / e.before, "gamma_22",
+             "the test picture looks as if it were encoded with a gamma of 2.2 instead of sRGB"},
+            other_gamma(e)};
+}
+
+// Another colour wherever the test picture shows its own background.
+Finding other_background(const Evidence& e) {
+    const cv::Vec3f own = border_color(e.a), other = border_color(e.b);
+    if (alike(own, other)) return {};
+    cv::Mat changed = e.a.clone();
+    each_row(changed.rows, [&](int y) {
+        for (int x = 0; x < changed.cols; ++x)
+            if (auto& color = changed.at<cv::Vec3f>(y, x); alike(color, own))
+                color = e.b.at<cv::Vec3f>(y, x);
+    });
+    const auto bytes = [](const cv::Vec3f& c) {
+        return fmt::format("({}, {}, {})", cvRound(255 * c[0]), cvRound(255 * c[1]),
+                           cvRound(255 * c[2]));
+    };
+    return {e.left(changed), "background",
+            fmt::format("the background is {} in the test picture and {} in the reference (sRGB)",
+                        bytes(own), bytes(other))};
 }
 
 }  // namespace
 
-Color encoded(const Color& color) {
-    const auto channel = [](float c) { return linear_to_srgb(std::clamp(c, 0.F, 1.F)); };
-    return {channel(color.x), channel(color.y), channel(color.z)};
-}
-
-cv::Mat encoded(const Image& image) {
-    return mapped(view(image), [](float c) { return linear_to_srgb(std::clamp(c, 0.F, 1.F)); });
-}
-
-cv::Mat view(const Image& image) {
-    static_assert(sizeof(Color) == sizeof(cv::Vec3f));
-    // cv::Mat has no read-only form; nothing writes through this one.
-    return {image.height, image.width, CV_32FC3, const_cast<Color*>(image.pixels.data())};
-}
-
-bool alike(const cv::Vec3f& a, const cv::Vec3f& b) {
-    constexpr double tolerance = 1.0 / 255 + 1e-6;
-    const auto near = [&](int i) { return std::abs(double(a[i]) - double(b[i])) <= tolerance; };
-    return near(0) && near(1) && near(2);
-}
-
-std::vector<std::string> obstacles(const Image& test, const Image& reference) {
-    if (!well_formed(test)) return {"the test picture is empty"};
-    if (!well_formed(reference)) return {"the reference picture is empty"};
-    if (test.width != reference.width || test.height != reference.height)
-        return {fmt::format("the pictures differ in size: the test picture is {}x{}, the reference "
-                            "picture {}x{}",
-                            test.width, test.height, reference.width, reference.height)};
-    std::vector<std::string> result;
-    for (std::string& sentence :
-         std::array{not_finite(test, "test"), not_finite(reference, "reference")})
-        if (!sentence.empty()) result.push_back(std::move(sentence));
-    return result;
-}
-
-double coverage(const cv::Mat& test_encoded, const cv::Mat& reference_encoded,
-                const std::optional<Color>& background) {
-    cv::Vec3f empty = border_color(reference_encoded);
-    if (background) {
-        const Color color = encoded(*background);
-        empty = {color.x, color.y, color.z};
-    }
-    std::size_t covered = 0;
-    for (int y = 0; y < test_encoded.rows; ++y)
-        for (int x = 0; x < test_encoded.cols; ++x)
-            if (!alike(test_encoded.at<cv::Vec3f>(y, x), empty) ||
-                !alike(reference_encoded.at<cv::Vec3f>(y, x), empty))
-                ++covered;
-    return double(covered) / double(test_encoded.total());
-}
-
-std::vector<std::string> differing_area(const cv::Mat& test_encoded,
-                                        const cv::Mat& reference_encoded) {
-    std::size_t count = 0;
-    cv::Rect area;
-    for (int y = 0; y < test_encoded.rows; ++y) {
-        for (int x = 0; x < test_encoded.cols; ++x) {
-            if (alike(test_encoded.at<cv::Vec3f>(y, x), reference_encoded.at<cv::Vec3f>(y, x)))
-                continue;
-            area |= cv::Rect(x, y, 1, 1);
-            ++count;
-        }
-    }
+std::vector<std::string> differing_area(const cv::Mat& matched, const cv::Mat& counted) {
+    const cv::Mat differing = ~matched & counted;
+    const int count = cv::countNonZero(differing);
     if (count == 0) return {};
+    const cv::Rect area = cv::boundingRect(differing);
     return {fmt::format("{} of {} pixels differ by more than 1/255 in sRGB, within ({}, {}) to "
                         "({}, {})",
-                        count, test_encoded.total(), area.x, area.y, area.br().x - 1,
+                        count, cv::countNonZero(counted), area.x, area.y, area.br().x - 1,
                         area.br().y - 1)};
 }
 
-std::vector<std::string> likely_cause(const Image& test, const Image& reference) {
-    const cv::Mat a = encoded(test), b = encoded(reference);
-    const double before = mean_square(a, b);
-    if (!(before > 0)) return {};
+bool clearly_better(const Finding& later, const Finding& earlier) {
+    return later.left < earlier.left / 2 && later.left < earlier.left - 0.001;
+}
 
-    std::vector<Cause> causes = {best_shift(a, b), best_gain(test, reference, before)};
-    const auto suppose = [&](const cv::Mat& changed, const std::string& sentence) {
-        causes.push_back({mean_square(changed, b) / before, sentence});
-    };
-    const auto flipped = [&](int axes) {
-        cv::Mat result;
-        cv::flip(a, result, axes);
-        return result;
-    };
-    suppose(flipped(1), "the test picture is mirrored left to right");
-    suppose(flipped(0), "the test picture is upside down");
-    suppose(flipped(-1), "the test picture is turned by 180 degrees");
-    cv::Mat swapped;
-    cv::cvtColor(a, swapped, cv::COLOR_RGB2BGR);
-    suppose(swapped, "red and blue are exchanged");
-    suppose(mapped(a, linear_to_srgb), "the test picture looks as if it lacked the sRGB encoding");
-    suppose(mapped(a, srgb_to_linear), "the test picture looks as if it were sRGB-encoded twice");
+Finding best_of(const std::vector<Finding>& simplest_first) {
+    Finding best;
+    for (const Finding& finding : simplest_first)
+        if (finding.convincing() && (best.cause.empty() || clearly_better(finding, best)))
+            best = finding;
+    return best;
+}
 
-    // A quarter of the mean square is half of the root mean square.
-    const Cause best = *std::ranges::min_element(causes, {}, &Cause::left);
-    if (!(best.left < 0.25)) return {};
-    return {fmt::format("{}: that explains {:.0f} % of the mean square error", best.sentence,
-                        100 * (1 - best.left))};
+std::string said(const Finding& finding) {
+    return fmt::format("{}: that explains {:.0f} % of the mean square error", finding.sentence,
+                       100 * (1 - finding.left));
+}
+
+Finding likely_cause(const Image& test, const Image& reference) {
+    Evidence evidence = {
+        .test = test, .reference = reference, .a = encoded(test), .b = encoded(reference)};
+    evidence.before = mean_square(evidence.a, evidence.b);
+    if (!(evidence.before > 0)) return {};
+    std::vector<Finding> findings = turned(evidence);
+    findings.push_back(whole_shift(evidence));
+    findings.push_back(exchanged(evidence));
+    std::ranges::copy(encodings(evidence), std::back_inserter(findings));
+    findings.push_back(brighter(evidence));
+    findings.push_back(other_background(evidence));
+    findings.push_back(tinted(evidence));
+    std::ranges::copy(motions(evidence), std::back_inserter(findings));
+    return best_of(findings);
+}
+
+Finding only_edges(const cv::Mat& test_encoded, const cv::Mat& reference_encoded) {
+    const cv::Mat band = edge_band(test_encoded) | edge_band(reference_encoded);
+    const cv::Mat differing = ~matched_pixels(test_encoded, reference_encoded, 0, display_step);
+    const int all = cv::countNonZero(differing), beside = cv::countNonZero(differing & band);
+    const bool edges_are_few = 2 * std::size_t(cv::countNonZero(band)) < band.total();
+    if (all == 0 || !edges_are_few || beside < 0.95 * all) return {};
+    return {1, "edges",
+            fmt::format("only edges differ: {:.0f} % of the differing pixels lie within a pixel of "
+                        "one, as with another anti-aliasing or a shift by a fraction of a pixel",
+                        100.0 * beside / all)};
 }
 
 }  // namespace penumbra::metrics

@@ -9,8 +9,12 @@
 
 namespace penumbra {
 
-/// The report as one offline HTML page.
-std::string report_html(const std::vector<Case>& cases);
+/// The page of one case: one offline HTML file. `index_link` leads back to the list of all cases;
+/// empty: there is none.
+std::string case_page(const Case& one, const std::string& index_link);
+
+/// The list of all cases, the worst first, with links to their pages.
+std::string index_page(const std::vector<Case>& cases);
 
 /// A loss and how often it occurs.
 struct CountedLoss {
@@ -20,6 +24,10 @@ struct CountedLoss {
 
 /// Equal losses are one, in the order of their first occurrence.
 std::vector<CountedLoss> counted(const Losses& losses);
+
+/// The part of the error that a limit allows which the metric has: 1 at the limit. NaN where there is
+/// no limit, or it says nothing of errors.
+double limit_use(const Metric& metric);
 
 /// "flip 0.02 > 0.01; ssim 0.98 < 0.99": the limits that are not met.
 std::string broken_limits(const Comparison& comparison);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace penumbra::metrics {
 
@@ -34,23 +35,57 @@ cv::Mat ssim_map(const cv::Mat& test_encoded, const cv::Mat& reference_encoded) 
     return result;
 }
 
-double worst_tile(const cv::Mat& map, int side, Worst worst) {
+namespace {
+
+struct TileMean {
+    cv::Rect area;
+    double mean = 0;
+};
+
+std::vector<TileMean> tile_means(const cv::Mat& map, const cv::Mat& region, int side) {
     const int width = std::min(side, map.cols), height = std::min(side, map.rows);
-    const bool smallest = worst == Worst::smallest;
-    double result = cv::mean(map(cv::Rect(0, 0, width, height)))[0];
+    std::vector<TileMean> result;
     for (int top = 0; top < map.rows; top += side) {
         for (int left = 0; left < map.cols; left += side) {
             const cv::Rect tile(std::min(left, map.cols - width), std::min(top, map.rows - height),
                                 width, height);
-            const double mean = cv::mean(map(tile))[0];
-            result = smallest ? std::min(result, mean) : std::max(result, mean);
+            const cv::Mat part = region(tile);
+            if (4 * cv::countNonZero(part) >= tile.area())
+                result.push_back({tile, cv::mean(map(tile), part)[0]});
         }
     }
     return result;
 }
 
-double quantile(const cv::Mat& map, double q) {
-    std::vector<float> values(map.begin<float>(), map.end<float>());
+}  // namespace
+
+double worst_tile(const cv::Mat& map, const cv::Mat& region, int side, Worst worst) {
+    const std::vector<TileMean> tiles = tile_means(map, region, side);
+    if (tiles.empty()) return cv::mean(map, region)[0];
+    const auto [least, most] = std::ranges::minmax_element(tiles, {}, &TileMean::mean);
+    return worst == Worst::smallest ? least->mean : most->mean;
+}
+
+std::vector<Tile> worst_tiles(const cv::Mat& map, const cv::Mat& region, int side, int count) {
+    std::vector<TileMean> tiles = tile_means(map, region, side);
+    std::ranges::stable_sort(tiles, std::greater<>(), &TileMean::mean);
+    std::vector<Tile> result;
+    std::vector<cv::Rect> taken;
+    for (const TileMean& tile : tiles) {
+        if (std::ssize(result) == count || !(tile.mean > 0)) break;
+        const auto meets = [&](const cv::Rect& other) { return !(other & tile.area).empty(); };
+        if (std::ranges::any_of(taken, meets)) continue;
+        taken.push_back(tile.area);
+        result.push_back({tile.area.x, tile.area.y, tile.area.width, tile.mean});
+    }
+    return result;
+}
+
+double quantile(const cv::Mat& map, const cv::Mat& region, double q) {
+    std::vector<float> values;
+    for (int y = 0; y < map.rows; ++y)
+        for (int x = 0; x < map.cols; ++x)
+            if (region.at<uchar>(y, x) != 0) values.push_back(map.at<float>(y, x));
     const auto rank = std::ptrdiff_t(std::ceil(q * double(values.size()))) - 1;
     const auto at = values.begin() + std::clamp(rank, std::ptrdiff_t(0), std::ssize(values) - 1);
     std::nth_element(values.begin(), at, values.end());

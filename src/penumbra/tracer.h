@@ -5,12 +5,19 @@
 #include "penumbra/scene.h"
 #include "penumbra/watch.h"
 
+#include <vector>
+
 namespace penumbra {
 
 /// Renders `scene` as its active camera sees it, with POV-Ray 3.7's light model and tolerances.
 /// The same input gives the same bytes for any number of threads.
 /// Precondition: defects(scene.scene).empty(). Throws Error (interrupted).
 Image render(const NormalisedScene& scene, const RenderOptions& options, const Watch& watch = {});
+
+/// What the ray through the centre of each pixel hits, row by row from the top: objects are counted
+/// instances first, then spheres, then planes; no_index where it hits nothing.
+/// Precondition: that of render().
+std::vector<Index> objects_seen(const NormalisedScene& scene, const RenderOptions& options);
 
 /// The exposure, in EV and added to what is folded into `scene`, at which the picture looks right:
 /// its logarithmic mean becomes a middle grey, less so where that would clip the highlights. Takes

@@ -5,6 +5,7 @@
 
 #include "penumbra/error.h"
 #include "penumbra/image.h"
+#include "penumbra/scene.h"
 #include "penumbra/watch.h"
 
 #include <chrono>
@@ -30,8 +31,10 @@ struct Metric {
     bool ok() const { return !limit || (at_least ? value >= *limit : std::abs(value) <= *limit); }
 };
 
-/// Limits of the verdict; a metric without a limit is only reported.
+/// Limits of the verdict; a metric without a limit is only reported. A metric that has used up more
+/// than 1 - warn_band of the error that its limit allows makes a pass a warning.
 struct Limits {
+    double warn_band = 0.2;
     std::map<std::string, double> limits = {  ///< by metric name
         {"parity", 0.995}, {"ssim", 0.99}, {"flip", 0.01}, {"flip_tile", 0.045}};
 };
@@ -44,25 +47,54 @@ struct PixelPair {
     Color test = Color(0), reference = Color(0);  ///< linear
 };
 
+/// A square of a picture and its mean FLIP error.
+struct Tile {
+    int x = 0, y = 0, side = 0;  ///< pixels
+    double flip = 0;
+};
+
 struct Comparison {
     Verdict verdict = Verdict::error;
     std::vector<Metric> metrics = {};        ///< in a fixed order
     PixelPair worst = {};                    ///< where the largest linear channel difference is
+    std::vector<Tile> worst_tiles = {};      ///< at most 4 of 16 pixels, apart, the worst first
     std::vector<std::string> diagnosis = {}; ///< sentences: why it differs or cannot be compared
+    std::string cause = {};                  ///< "shift", "gain", ... (docs/validation.md); "": unknown
     Image flip_map = {};                     ///< FLIP error per pixel, in all three channels
+    double warn_band = 0.2;                  ///< of the limits in force
 
     /// The metric of that name; NaN when there is none.
     double value(const std::string& name) const;
 };
 
+/// Pixels x0 <= x < x1, y0 <= y < y1.
+struct PixelBox {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
 struct CompareOptions {
     Limits limits = {};
     std::optional<Color> background = {};  ///< for coverage; the most frequent border colour if absent
+    Image mask = {};                       ///< black pixels are ignored; empty: none. Same size as the pictures
+    std::vector<PixelBox> ignored = {};    ///< pixels that are ignored
+    int shift_tolerance = 0;  ///< pixels: parity accepts the colour of any pixel that is so near
+    double exposure = 0;      ///< EV: both pictures are brightened by 2^EV before they are encoded
 };
 
 /// Computes every figure of the parity rule. Unequal sizes, NaN and nearly empty pictures give
 /// Verdict::not_comparable.
 Comparison compare(const Image& test, const Image& reference, const CompareOptions& options = {});
+
+/// What the scene that `test` was rendered from tells of a comparison that failed: it is rendered
+/// with one thing changed at a time (no shadows, no highlights, another field of view, an object
+/// missing, ...), and what brings it close to `reference` is the cause. Replaces comparison.cause and
+/// adds a sentence when one explains more than the pictures alone do. Throws Error (interrupted).
+void explain(const NormalisedScene& scene, const RenderOptions& options, const Image& test,
+             const Image& reference, Comparison& comparison, const Watch& watch = {});
+
+/// Limits that known-good pairs meet: of each metric the worst value of all pairs with `margin`
+/// times its error. Pairs that cannot be compared are left out.
+Limits calibrated_limits(const std::vector<Comparison>& good, double margin = 1.5);
 
 /// |test - reference| x gain, linear. Precondition: equal sizes.
 Image difference(const Image& test, const Image& reference, float gain);
@@ -98,6 +130,7 @@ std::string povray_version(const PovrayOptions& options = {});
 /// One compared pair, with all that a report says of it.
 struct Case {
     std::string name = {};
+    std::string folder = {};  ///< of its files, relative to the report; empty: the report's own
     Comparison comparison = {};
     std::string test_name = "penumbra", reference_name = "POV-Ray";
     Image test = {}, reference = {};
@@ -107,15 +140,34 @@ struct Case {
     std::map<std::string, std::string> files = {};   ///< role -> path relative to the report
     std::string povray_log = {};
     std::string message = {};                        ///< of a case that ended in an error
+    bool cached = false;                             ///< taken from an earlier run
 };
 
-/// The documented JSON document: {"version": 1, "cases": [...]}.
+/// The documented JSON document: {"version": 1, "cases": [...]} (docs/report.schema.json).
 std::string report_json(const std::vector<Case>& cases);
+
+/// The cases of such a document, without their pictures. Throws Error (input).
+std::vector<Case> cases_of_json(const std::string& text);
 
 /// JUnit XML with one test case per Case.
 std::string report_junit(const std::vector<Case>& cases);
 
-/// Writes index.html, report.json and junit.xml into `folder`. Throws Error (output).
+/// A table in GitHub's Markdown with the causes of what failed, worst first.
+std::string report_markdown(const std::vector<Case>& cases);
+
+/// How bad a case is, for ranking: errors, then what cannot be compared, then failures by how far
+/// they are beyond their limits. Larger is worse.
+double severity(const Case& one);
+
+/// Writes the page of one case, index.html, into `folder`, and thumbnails.png: both pictures and
+/// their difference side by side, when it has pictures. `index` is a link back to the list of all
+/// cases; empty: there is none. Throws Error (output).
+void write_case_page(const std::filesystem::path& folder, const Case& one,
+                     const std::string& index = "");
+
+/// Writes report.json, junit.xml and, for several cases, index.html with the list of all, each with
+/// a link to its page in folder/Case::folder. The cases need no pictures any more. A single case
+/// without a folder of its own gets its page instead of the list. Throws Error (output).
 void write_report(const std::filesystem::path& folder, const std::vector<Case>& cases);
 
 }  // namespace penumbra
