@@ -198,6 +198,40 @@ bool Section::read(const std::string& key, bool& value) {
     return true;
 }
 
+bool Section::read(const std::string& key, std::vector<std::string>& value) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return false;
+    const auto* list = node->as_array();
+    if (list == nullptr) wrong(key, *node, "must be a list of strings, not " + type_of(*node));
+    value.clear();
+    for (const toml::node& entry : *list) {
+        const auto* text = entry.as_string();
+        if (text == nullptr)
+            wrong(key, entry, "must be a list of strings, not of " + type_of(entry));
+        value.push_back(text->get());
+    }
+    return true;
+}
+
+bool Section::read_rows(const std::string& key, std::size_t count,
+                        std::vector<std::vector<double>>& rows, const std::string& form) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return false;
+    const auto* list = node->as_array();
+    if (list == nullptr)
+        wrong(key, *node, fmt::format("must be a list of {}, not {}", form, type_of(*node)));
+    rows.assign(list->size(), std::vector<double>(count));
+    for (std::size_t i = 0; i < rows.size(); ++i) numbers(key, (*list)[i], rows[i], form);
+    return true;
+}
+
+std::vector<std::string> Section::keys() {
+    std::vector<std::string> result;
+    for (const auto& [key, node] : *content) result.emplace_back(key.str());
+    known = result;
+    return result;
+}
+
 bool Section::read(const std::string& key, std::string& value) {
     const toml::node* node = find(key);
     if (node == nullptr) return false;

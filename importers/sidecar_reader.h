@@ -79,6 +79,14 @@ class Section {
     bool read_scale(const std::string& key, Vec3& value);
     bool read_numbers(const std::string& key, std::span<double> values, const std::string& form);
 
+    /// A list of strings.
+    bool read(const std::string& key, std::vector<std::string>& value);
+    /// A list of lists of `count` numbers each.
+    bool read_rows(const std::string& key, std::size_t count,
+                   std::vector<std::vector<double>>& rows, const std::string& form);
+    /// The keys that are there, in order; they count as asked for.
+    std::vector<std::string> keys();
+
     /// One of a few words.
     template <class Enum, std::size_t n>
     bool read(const std::string& key, Enum& value,

@@ -59,12 +59,12 @@ TEST_CASE("a wrong command line exits with 2 and one sentence") {
           "such as 0.1,0.1,0.2\n");
     CHECK(error_of({"render", "a.obj", "--depth", "16", "-o", "a.exr"}) ==
           "penumbra: error: --depth: 16 bits are for .png and .tif, not .exr\n");
-    CHECK(error_of({"compare", "a.png"}) ==
-          "penumbra: error: compare takes two pictures, not 1 (see 'penumbra compare --help')\n");
+    CHECK(error_of({"compare", "a.png"}) == "penumbra: error: compare takes two pictures or two "
+                                            "folders, not 1 (see 'penumbra compare --help')\n");
     CHECK(error_of({"compare", "a.png", "b.png", "--profile", "lax"}).find("lax") !=
           std::string::npos);
     CHECK(error_of({"validate", "a.obj", "--jobs", "2"}) ==
-          "penumbra: error: --jobs: needs --each\n");
+          "penumbra: error: --jobs: needs --each or --manifest\n");
     CHECK(entries(folder.path) == 0);
 }
 

@@ -1,15 +1,10 @@
 #include "arguments.h"
 
 #include "descriptions.h"
-#include "values.h"
-
-#include <CLI/CLI.hpp>
-#include <fmt/format.h>
+#include "option_reader.h"
 
 #include <cmath>
 #include <cstdlib>
-#include <functional>
-#include <memory>
 
 namespace penumbra::cli {
 namespace {
@@ -18,89 +13,60 @@ constexpr double infinity = HUGE_VAL;
 constexpr Range any = {-infinity, infinity};
 constexpr Range not_negative = {0, infinity};
 
-// As CLI11's, but without "..." behind every type.
-struct HelpFormat : CLI::Formatter {
-    std::string make_option_opts(const CLI::Option* option) const override {
-        const std::string type = option->get_type_name();
-        return type.empty() || option->get_positional() ? "" : " " + type;
-    }
-};
-
-// One subcommand with the options that were declared for it. Values are applied in the order of the
-// command line, for a later setting overrides an earlier one.
-class Reader {
+// The options of penumbra's commands.
+class Reader : public OptionReader {
   public:
-    using Apply = std::function<void(const std::string&)>;
-
     Reader(CLI::App& program, const Description& description, Arguments& result)
-        : app(program.add_subcommand(description.name, description.what)), arguments(result) {
+        : OptionReader(program, description.name, description.what), arguments(result) {
         arguments.command = description.command;
-        app->set_help_flag("-h,--help", "Print this help and exit");
         app->footer(std::string("Example:\n") + description.example);
         declare();
-    }
-
-    bool chosen() const { return app->parsed(); }
-
-    void apply() {
-        std::map<const CLI::Option*, std::size_t> seen;
-        for (const CLI::Option* option : app->parse_order()) {
-            const auto found = appliers.find(option);
-            if (found == appliers.end()) continue;
-            found->second(option->results().at(seen[option]++));
-        }
     }
 
     // What depends on several options.
     void finish() {
         if (color || no_color) arguments.color = !no_color;
-        const bool compares = arguments.command == Command::compare;
-        if (!profile.empty())
-            arguments.limits = profile_limits(profile);
-        else if (compares)
-            arguments.limits = profile_limits("equivalent");
-        for (const auto& [metric, value] : overrides) arguments.limits.limits[metric] = value;
-        if (compares && arguments.inputs.size() != 2)
-            throw Error(
-                Failure::usage, "",
-                fmt::format("compare takes two pictures, not {} (see 'penumbra compare --help')",
-                            arguments.inputs.size()));
-        if (arguments.inputs.empty() && (arguments.each || !arguments.load.sidecar))
+        finish_limits();
+        const std::size_t given = arguments.inputs.size();
+        if (arguments.command == Command::compare && given != 2)
+            throw Error(Failure::usage, "",
+                        fmt::format("compare takes two pictures or two folders, not {} (see "
+                                    "'penumbra compare --help')",
+                                    given));
+        if (arguments.command == Command::calibrate && (given == 0 || given % 2 != 0))
+            throw Error(Failure::usage, "",
+                        fmt::format("calibrate takes pairs of pictures or of folders, not {} (see "
+                                    "'penumbra calibrate --help')",
+                                    given));
+        if (arguments.manifest && given > 0)
+            throw Error(Failure::usage, "--manifest", "names the inputs; none are given beside it");
+        const bool has_input =
+            given > 0 || arguments.manifest || (arguments.load.sidecar && !arguments.each);
+        if (!has_input)
             throw Error(
                 Failure::usage, "",
                 fmt::format("no input is given (see 'penumbra {} --help')", app->get_name()));
-        if (arguments.jobs > 1 && !arguments.each)
-            throw Error(Failure::usage, "--jobs", "needs --each");
+        if (arguments.command == Command::validate && arguments.jobs > 1 && !arguments.each &&
+            !arguments.manifest)
+            throw Error(Failure::usage, "--jobs", "needs --each or --manifest");
     }
 
-    std::vector<std::string> option_names() const {
-        std::vector<std::string> names;
-        for (const CLI::Option* option : app->get_options())
-            for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-        return names;
+    void finish_limits() {
+        Limits& limits = arguments.judging.limits;
+        if (!profile.empty())
+            limits = profile_limits(profile);
+        else if (arguments.command == Command::compare)
+            limits = profile_limits("equivalent");
+        for (const auto& [metric, value] : overrides) limits.limits[metric] = value;
+        if (warn_band) limits.warn_band = *warn_band;
     }
 
   private:
-    CLI::App* app;
     Arguments& arguments;
-    std::string group;
-    std::map<const CLI::Option*, Apply> appliers;
-    std::vector<std::unique_ptr<std::vector<std::string>>> values;
     bool color = false, no_color = false;
     std::string profile;
     std::map<std::string, double> overrides;
-
-    void value(const std::string& name, const std::string& type, const std::string& what,
-               Apply apply) {
-        values.push_back(std::make_unique<std::vector<std::string>>());
-        CLI::Option* const option = app->add_option(name, *values.back(), what);
-        option->allow_extra_args(false)->type_name(type)->group(group);
-        appliers[option] = std::move(apply);
-    }
-
-    void flag(const std::string& name, bool& target, const std::string& what) {
-        app->add_flag(name, target, what)->group(group);
-    }
+    std::optional<double> warn_band;
 
     // An option that stands for a sidecar key.
     void setting(const std::string& name, const std::string& type, const std::string& what,
@@ -112,16 +78,6 @@ class Reader {
         });
     }
 
-    // One of the values of an enumeration, by `words` in its order.
-    template <class Enum>
-    void choice(const std::string& name, const std::vector<std::string>& words,
-                const std::string& what, Enum& target) {
-        value(name, fmt::format("{}", fmt::join(words, "|")), what,
-              [name, words, &target](const std::string& text) {
-                  target = Enum(read_choice(name, text, words));
-              });
-    }
-
     void limit(const std::string& name, const std::string& metric, const std::string& what) {
         value(name, "X", what, [this, name, metric](const std::string& text) {
             overrides[metric] = read_number(name, text, {0, 1});
@@ -131,21 +87,30 @@ class Reader {
     void declare() {
         const Command command = arguments.command;
         declare_inputs();
-        if (command != Command::compare) declare_scene();
+        if (!judges_pictures()) declare_scene();
         if (command == Command::validate) declare_povray();
         if (command == Command::validate || command == Command::compare) declare_limits();
+        if (command == Command::calibrate) declare_calibration();
         declare_console();
     }
 
+    // Takes pictures rather than scenes.
+    bool judges_pictures() const {
+        return arguments.command == Command::compare || arguments.command == Command::calibrate;
+    }
+
+    const char* inputs_help() const {
+        switch (arguments.command) {
+        case Command::compare:
+            return "The picture to judge and the reference, or two folders of them";
+        case Command::calibrate: return "Pairs of equally good pictures, or of folders of them";
+        default: return "Models (.gltf, .glb, .obj) and sidecars (.toml) that form one scene";
+        }
+    }
+
     void declare_inputs() {
-        const bool compares = arguments.command == Command::compare;
-        values.push_back(std::make_unique<std::vector<std::string>>());
-        CLI::Option* const inputs = app->add_option(
-            compares ? "PICTURES" : "INPUT", *values.back(),
-            compares ? "The picture to judge and the reference"
-                     : "Models (.gltf, .glb, .obj) and sidecars (.toml) that form one scene");
-        inputs->type_name("");
-        appliers[inputs] = [this](const std::string& text) { arguments.inputs.emplace_back(text); };
+        positional(judges_pictures() ? "PICTURES" : "INPUT", inputs_help(),
+                   [this](const std::string& text) { arguments.inputs.emplace_back(text); });
         group = "Output";
         switch (arguments.command) {
         case Command::render:
@@ -167,6 +132,7 @@ class Reader {
                 arguments.report = not_empty("--report", text);
             });
             break;
+        case Command::calibrate:
         case Command::info: break;
         }
     }
@@ -268,11 +234,34 @@ class Reader {
                   arguments.povray.timeout =
                       std::chrono::seconds(read_integer("--timeout", text, {1, 1e9}));
               });
+        value("--renderer", "NAME=COMMAND",
+              "Compare with another renderer too; COMMAND may hold {pov}, {scene}, {out}, {width} "
+              "and {height}",
+              [this](const std::string& text) {
+                  arguments.renderers.push_back(read_renderer("--renderer", text));
+              });
         group = "Scenes";
         flag("--each", arguments.each, "Every INPUT is a scene of its own");
-        value("--jobs", "N", "With --each: scenes at once (1)", [this](const std::string& text) {
+        value("--manifest", "FILE", "Validate the scenes that this .toml file lists",
+              [this](const std::string& text) {
+                  arguments.manifest = not_empty("--manifest", text);
+              });
+        jobs();
+        flag("--fresh", arguments.fresh, "Render unchanged scenes of an earlier report again");
+    }
+
+    void jobs() {
+        value("--jobs", "N", "Of several: so many at once (1)", [this](const std::string& text) {
             arguments.jobs = read_integer("--jobs", text, {1, 256});
         });
+    }
+
+    void declare_calibration() {
+        group = "Limits";
+        value("--margin", "X", "Allow X times the error of the worst pair (1.5)",
+              [this](const std::string& text) {
+                  arguments.margin = read_number("--margin", text, {1, 1000});
+              });
     }
 
     void declare_limits() {
@@ -283,17 +272,56 @@ class Reader {
         limit("--min-ssim", "ssim", "Least structural similarity (0.99)");
         limit("--max-flip", "flip", "Largest mean FLIP error (0.01)");
         limit("--max-flip-tile", "flip_tile", "Largest FLIP error of a tile (0.045)");
+        value("--limit", "METRIC=X", "Limit of any metric, such as bias=0.002",
+              [this](const std::string& text) {
+                  const auto [metric, number] = read_limit("--limit", text);
+                  overrides[metric] = number;
+              });
+        value("--warn-band", "SHARE", "Warn within this share of a limit (0.2)",
+              [this](const std::string& text) {
+                  warn_band = read_number("--warn-band", text, {0, 1});
+              });
+        declare_pixels();
         if (arguments.command != Command::compare) return;
+        group = "Pictures";
+        jobs();
+        value("--exposure", "EV", "Brighten both by 2^EV before they are compared (0)",
+              [this](const std::string& text) {
+                  arguments.exposure = read_number("--exposure", text, {-32, 32});
+              });
         value("--background", "R,G,B", "Linear colour that counts as empty (that of the border)",
               [this](const std::string& text) {
                   arguments.background = read_color("--background", text);
               });
     }
 
+    void declare_pixels() {
+        group = "Pixels";
+        value("--mask", "FILE", "Picture that is black where pixels are ignored",
+              [this](const std::string& text) {
+                  arguments.judging.mask = not_empty("--mask", text);
+              });
+        value("--ignore", "X0,Y0,X1,Y1", "Ignore the pixels from X0,Y0 up to, not with, X1,Y1",
+              [this](const std::string& text) {
+                  arguments.judging.ignored.push_back(read_box("--ignore", text));
+              });
+        value("--shift-tolerance", "PX", "Accept the colour of a pixel that is so near (0)",
+              [this](const std::string& text) {
+                  arguments.judging.shift_tolerance =
+                      read_integer("--shift-tolerance", text, {0, 16});
+              });
+    }
+
     void declare_console() {
         group = "Messages";
         flag("--json", arguments.json, "Print the result as JSON");
-        if (arguments.command != Command::compare)
+        if (arguments.command == Command::validate || arguments.command == Command::compare)
+            value("--summary", "markdown", "Print a table in Markdown",
+                  [this](const std::string& text) {
+                      read_choice("--summary", text, {"markdown"});
+                      arguments.markdown = true;
+                  });
+        if (!judges_pictures())
             flag("--strict", arguments.strict, "Fail when something cannot be carried over");
         flag("-q,--quiet", arguments.quiet, "Print errors and results only");
         flag("-v,--verbose", arguments.verbose, "Print every warning and what is being done");
@@ -311,32 +339,6 @@ std::string without_double_gaps(std::string text) {
     for (auto at = text.find("\n\n\n"); at != std::string::npos; at = text.find("\n\n\n", at))
         text.erase(at, 1);
     return text;
-}
-
-// CLI11's own findings as one clear sentence.
-[[noreturn]] void refuse(const CLI::App& program, const CLI::ParseError& error,
-                         const std::vector<std::string>& options) {
-    const auto chosen = program.get_subcommands();
-    const std::string see = fmt::format(" (see 'penumbra {}--help')",
-                                        chosen.empty() ? "" : chosen[0]->get_name() + " ");
-    const auto left = program.remaining(true);
-    if (chosen.empty()) {
-        std::vector<std::string> names;
-        for (const Description& description : descriptions) names.emplace_back(description.name);
-        if (left.empty()) throw Error(Failure::usage, "", "no command is given" + see);
-        const char* const kind = left[0].starts_with('-') ? "option" : "command";
-        throw Error(
-            Failure::usage, "",
-            fmt::format("unknown {} '{}'{}{}", kind, left[0], did_you_mean(left[0], names), see));
-    }
-    if (!left.empty()) {
-        const std::string name = left[0].substr(0, left[0].find('='));
-        throw Error(Failure::usage, "",
-                    fmt::format("unknown option '{}'{}{}", name, did_you_mean(name, options), see));
-    }
-    std::string text = error.what();
-    text = text.substr(0, text.find('\n'));
-    throw Error(Failure::usage, "", text + see);
 }
 
 }  // namespace

@@ -13,11 +13,26 @@
 
 namespace penumbra::cli {
 
-enum class Command { render, export_scene, validate, compare, info };
+enum class Command { render, export_scene, validate, compare, calibrate, info };
+
+/// A further renderer: what --renderer says.
+struct OtherRenderer {
+    std::string name = {};
+    std::vector<std::string> words = {};  ///< with {pov}, {scene}, {out}, {width}, {height} in them
+};
+
+/// How pictures are compared: what a manifest may set for a case of its own.
+struct Judging {
+    Limits limits = {};
+    std::optional<std::filesystem::path> mask = {};
+    std::vector<PixelBox> ignored = {};
+    int shift_tolerance = 0;
+};
 
 struct Arguments {
     Command command = Command::render;
-    std::vector<std::filesystem::path> inputs = {};  ///< compare: the two pictures
+    /// compare: two pictures or folders; calibrate: pairs of them.
+    std::vector<std::filesystem::path> inputs = {};
     LoadOptions load = {};
     /// What the user typed for each of load.settings that is not from --set: "--camera Top".
     std::map<std::string, std::string> origins = {};
@@ -28,13 +43,18 @@ struct Arguments {
     int bits = 8;     ///< of an integer picture's channels
     int threads = 0;  ///< 0: as many as the machine has
 
-    bool each = false;  ///< validate: every input is a scene of its own
-    int jobs = 1;       ///< validate --each: scenes at once
+    bool each = false;   ///< validate: every input is a scene of its own
+    bool fresh = false;  ///< validate: nothing is taken from an earlier run
+    int jobs = 1;        ///< cases at once
+    std::optional<std::filesystem::path> manifest = {};
     PovrayOptions povray = {};
-    Limits limits = {};
+    std::vector<OtherRenderer> renderers = {};
+    Judging judging = {};
     std::optional<Color> background = {};  ///< compare: for coverage
+    double exposure = 0;                   ///< compare: EV, of both pictures
+    double margin = 1.5;                   ///< calibrate: allowed error over that of the worst pair
 
-    bool json = false, quiet = false, verbose = false, strict = false;
+    bool json = false, markdown = false, quiet = false, verbose = false, strict = false;
     std::optional<bool> color = {};
     std::vector<std::string> words = {};  ///< the whole command line, "penumbra" first
 };

@@ -34,6 +34,7 @@ int render(const Context& context);
 int export_scene(const Context& context);
 int validate(const Context& context);
 int compare(const Context& context);
+int calibrate(const Context& context);
 int info(const Context& context);
 
 }  // namespace penumbra::cli

@@ -1,5 +1,5 @@
-#include "figures.h"
-#include "report_folder.h"
+#include "batch.h"
+#include "picture_pairs.h"
 #include "steps.h"
 #include "values.h"
 
@@ -7,40 +7,102 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace penumbra::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+CompareOptions options_of(const Context& context) {
+    CompareOptions options = compare_options(context.arguments.judging);
+    options.background = context.arguments.background;
+    options.exposure = context.arguments.exposure;
+    return options;
+}
+
+// The command that compares this pair alone.
+std::string own_command(const Arguments& arguments, const PicturePair& pair) {
+    std::vector<std::string> words;
+    for (std::size_t i = 0; i < arguments.words.size(); ++i) {
+        const std::string& word = arguments.words[i];
+        if (word == "--report" || word == "--jobs") ++i;  // and its value
+        if (word == "--report" || word == "--jobs" || word.starts_with("--report=") ||
+            word.starts_with("--jobs="))
+            continue;
+        words.push_back(word == arguments.inputs[0].string()   ? pair.test.string()
+                        : word == arguments.inputs[1].string() ? pair.reference.string()
+                                                               : word);
+    }
+    return shell_command(words);
+}
+
+void brighten(Image& image, double exposure) {
+    if (exposure == 0) return;
+    for (Color& color : image.pixels) color *= float(std::exp2(exposure));
+}
+
+void compare_pair(const Context& context, const CompareOptions& options, const PicturePair& pair,
+                  Case& result) {
+    result.test_name = pair.test.string();
+    result.reference_name = pair.reference.string();
+    if (pair.test.empty())
+        throw Error(Failure::input, pair.reference.string(),
+                    "has no counterpart in " + context.arguments.inputs[0].string());
+    if (pair.reference.empty())
+        throw Error(Failure::input, pair.test.string(),
+                    "has no counterpart in " + context.arguments.inputs[1].string());
+    result.test = load_image(pair.test);
+    result.reference = load_image(pair.reference);
+    const Stopwatch watch;
+    result.comparison = penumbra::compare(result.test, result.reference, options);
+    result.seconds["compare"] = watch.seconds();
+    brighten(result.test, options.exposure);  // as it was judged, for the report
+    brighten(result.reference, options.exposure);
+}
+
+// "a/b.png" -> "a_b.png": one folder a case.
+std::string folder_name(std::string name) {
+    std::ranges::replace(name, '/', '_');
+    return name.starts_with('.') ? '_' + name : name;
+}
+
+}  // namespace
 
 int compare(const Context& context) {
     const Arguments& arguments = context.arguments;
     if (arguments.report) check_report(*arguments.report);
+    const auto pairs = picture_pairs(arguments.inputs[0], arguments.inputs[1]);
+    const bool several = fs::is_directory(arguments.inputs[0]);
+    const CompareOptions options = options_of(context);
+    std::optional<ReportFolder> report;
+    if (arguments.report) report.emplace(*arguments.report);
 
-    Case result;
-    result.test_name = arguments.inputs[0].string();
-    result.reference_name = arguments.inputs[1].string();
-    result.name = fmt::format("{} vs {}", arguments.inputs[0].filename().string(),
-                              arguments.inputs[1].filename().string());
-    result.commands = {shell_command(arguments.words)};
-    result.test = load_image(arguments.inputs[0]);
-    result.reference = load_image(arguments.inputs[1]);
-    const Stopwatch watch;
-    result.comparison =
-        penumbra::compare(result.test, result.reference, {arguments.limits, arguments.background});
-    result.seconds["compare"] = watch.seconds();
-    const int status = verdict_status(result.comparison.verdict);
-
-    if (arguments.report) {
-        ReportFolder folder(*arguments.report);
-        save_maps(folder.path(), "", result);
-        write_report(folder.path(), {result});
-        if (context.stop.stop_requested()) throw Error(Failure::interrupted, "", "interrupted");
-        folder.finish();
+    std::vector<Job> jobs;
+    Names names;
+    for (const PicturePair& pair : pairs) {
+        const std::string folder = several ? names.unused(folder_name(pair.name)) : "";
+        jobs.push_back({pair.name, [&, pair, folder](std::vector<Case>& cases) {
+                            Case& result = cases[0];
+                            result.folder = folder;
+                            result.commands = {several ? own_command(arguments, pair)
+                                                       : shell_command(arguments.words)};
+                            compare_pair(context, options, pair, result);
+                            if (!report) return;
+                            save_maps(report->path(), result);
+                            if (several) write_case_page(report->path() / folder, result, "..");
+                        }});
     }
-    if (arguments.json)
-        context.console.result(report_json({result}));
-    else
-        context.console.result(figures(result));
-    if (arguments.report && !arguments.json)
-        context.console.result(
-            fmt::format("report: {}\n", (*arguments.report / "index.html").string()));
+    auto outcomes = run_jobs(context, jobs, arguments.jobs, !several);
+    const int status = worst_status(outcomes);
+    if (!several && outcomes.front().failure) std::rethrow_exception(outcomes.front().failure);
+    const std::vector<Case> cases = cases_of(std::move(outcomes));
+    if (report) {
+        write_report(report->path(), cases);
+        report->finish();
+    }
+    print_cases(context, cases, arguments.report);
     return status;
 }
 

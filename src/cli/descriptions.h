@@ -20,9 +20,13 @@ inline constexpr Description descriptions[] = {
     {Command::validate, "validate",
      "Render with both renderers, compare the pictures and write a report",
      "  penumbra validate chair.glb --sidecar studio.toml --report chair-report\n"
-     "  penumbra validate --each --jobs 2 scenes/*.toml --report all"},
+     "  penumbra validate --each --jobs 2 scenes/*.toml --report all\n"
+     "  penumbra validate --manifest cases.toml --summary markdown"},
     {Command::compare, "compare", "Measure how alike two pictures are",
-     "  penumbra compare ours.exr theirs.png --report difference --profile similar"},
+     "  penumbra compare ours.exr theirs.png --report difference --profile similar\n"
+     "  penumbra compare out/ golden/ --report difference --jobs 2"},
+    {Command::calibrate, "calibrate", "Propose limits from pairs that are known to be good",
+     "  penumbra calibrate monday/ tuesday/ --margin 2"},
     {Command::info, "info", "Say what a scene holds and what of it can be reproduced",
      "  penumbra info chair.glb --json"},
 };

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace penumbra::cli {
 namespace {
@@ -16,7 +17,7 @@ std::string color_text(const Color& c) {
 }
 
 std::string metric_line(const Metric& metric) {
-    std::string line = fmt::format("  {:<14} {:>12}", metric.name, number(metric.value));
+    std::string line = fmt::format("  {:<15} {:>12}", metric.name, number(metric.value));
     if (metric.limit)
         line += fmt::format("   {} {:<8} {}", metric.at_least ? ">=" : "<=", number(*metric.limit),
                             metric.ok() ? "ok" : "NOT MET");
@@ -29,7 +30,8 @@ std::string figures(const Case& result) {
     const Comparison& comparison = result.comparison;
     std::string text = fmt::format("{}: {}\n", result.name, to_string(comparison.verdict));
     if (!result.message.empty()) text += fmt::format("  {}\n", result.message);
-    for (const Metric& metric : comparison.metrics) text += metric_line(metric);
+    for (const Metric& metric : comparison.metrics)
+        if (metric.limit || !std::isnan(metric.value)) text += metric_line(metric);
     if (!comparison.metrics.empty() && comparison.verdict != Verdict::not_comparable)
         text += fmt::format("  worst pixel ({}, {}): {} {}, {} {}\n", comparison.worst.x,
                             comparison.worst.y, result.test_name, color_text(comparison.worst.test),

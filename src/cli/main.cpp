@@ -36,6 +36,7 @@ int run(const Arguments& arguments, Console& console) {
     case Command::export_scene: return export_scene(context);
     case Command::validate: return validate(context);
     case Command::compare: return compare(context);
+    case Command::calibrate: return calibrate(context);
     case Command::info: return info(context);
     }
     return exit_internal;

@@ -53,6 +53,18 @@ ReportFolder::ReportFolder(const fs::path& final_name) : target(plain(final_name
 
 ReportFolder::~ReportFolder() { remove_leftover(); }
 
+void ReportFolder::publish(const std::string& part) {
+    std::error_code error;
+    fs::create_directories(target, error);
+    const fs::path to = target / part;
+    // The old one is moved aside first: a folder can only take the name of an empty one.
+    const fs::path old = staging / (part + ".old");
+    if (fs::exists(to, error)) fs::rename(to, old, error);
+    if (!error) fs::rename(staging / part, to, error);
+    if (error) fail(to, error);
+    fs::remove_all(old, error);
+}
+
 void ReportFolder::finish() {
     std::error_code error;
     if (!fs::exists(target, error)) {
@@ -68,14 +80,20 @@ void ReportFolder::finish() {
     }
 }
 
-void save_maps(const fs::path& folder, const std::string& sub, Case& result) {
+std::string in_report(const Case& result, const std::string& file) {
+    return result.folder.empty() ? file : result.folder + "/" + file;
+}
+
+void save_maps(const fs::path& report, Case& result) {
     if (result.comparison.flip_map.pixels.empty()) return;
-    const std::string prefix = sub.empty() ? "" : sub + "/";
-    result.files["difference"] = prefix + "difference.png";
-    result.files["flip"] = prefix + "flip.png";
-    save_image(folder / result.files["difference"],
+    std::error_code error;
+    fs::create_directories(report / result.folder, error);
+    if (error) fail(report / result.folder, error);
+    result.files["difference"] = in_report(result, "difference.png");
+    result.files["flip"] = in_report(result, "flip.png");
+    save_image(report / result.files["difference"],
                difference(result.test, result.reference, difference_gain));
-    save_image(folder / result.files["flip"], heat_map(result.comparison.flip_map));
+    save_image(report / result.files["flip"], heat_map(result.comparison.flip_map));
 }
 
 }  // namespace penumbra::cli

@@ -21,6 +21,11 @@ class ReportFolder {
     ReportFolder& operator=(const ReportFolder&) = delete;
 
     const std::filesystem::path& path() const { return staging; }
+    /// The final folder; what is in it is of an earlier run.
+    const std::filesystem::path& final_path() const { return target; }
+
+    /// Moves one folder of it to the final folder at once, in the place of an earlier one.
+    void publish(const std::string& part);
 
     /// Moves everything to the final folder, over what an earlier report left there.
     void finish();
@@ -29,8 +34,11 @@ class ReportFolder {
     std::filesystem::path target, staging;
 };
 
-/// Writes the difference and FLIP maps of comparable pictures into `folder` / `sub` and notes them
-/// in result.files.
-void save_maps(const std::filesystem::path& folder, const std::string& sub, Case& result);
+/// Writes the difference and FLIP maps of comparable pictures into the case's folder of a report
+/// and notes them in result.files.
+void save_maps(const std::filesystem::path& report, Case& result);
+
+/// The path of a case's file in the report.
+std::string in_report(const Case& result, const std::string& file);
 
 }  // namespace penumbra::cli

@@ -1,5 +1,6 @@
 #include "steps.h"
 
+#include "penumbra/image.h"
 #include "penumbra/tracer.h"
 
 #include <fmt/format.h>
@@ -33,15 +34,28 @@ void expose(const Context& context, Imported& imported) {
 }  // namespace
 
 Imported load(const Context& context, const std::vector<fs::path>& inputs) {
+    return load(context, inputs, context.arguments.load);
+}
+
+Imported load(const Context& context, const std::vector<fs::path>& inputs,
+              const LoadOptions& options) {
     const Arguments& arguments = context.arguments;
     try {
-        Imported imported = load_scene(inputs, arguments.load);
+        Imported imported = load_scene(inputs, options);
         imported.render.threads = arguments.threads;
         if (imported.auto_exposure) expose(context, imported);
         return imported;
     } catch (const Error& error) {
         throw Error(error.failure, "", in_users_words(arguments, error.what()));
     }
+}
+
+CompareOptions compare_options(const Judging& judging) {
+    CompareOptions options = {.limits = judging.limits,
+                              .ignored = judging.ignored,
+                              .shift_tolerance = judging.shift_tolerance};
+    if (judging.mask) options.mask = load_image(*judging.mask);
+    return options;
 }
 
 void report_losses(const Context& context, const Losses& losses) {
@@ -92,8 +106,9 @@ double sample_count(const RenderOptions& options) {
 }
 
 Rendered render_scene(const Context& context, const NormalisedScene& scene,
-                      const RenderOptions& options, const std::string& name) {
-    const auto show = context.console.progress(name, sample_count(options), " samples");
+                      const RenderOptions& options, const std::string& name, bool quiet) {
+    std::function<void(double)> show;
+    if (!quiet) show = context.console.progress(name, sample_count(options), " samples");
     Rendered result;
     Stopwatch time;
     const auto progress = [&](double done) {

@@ -21,8 +21,14 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 };
 
-/// The scene of `inputs` with all that the command line lays over it. Throws Error.
+/// The scene of `inputs` with all that `options`, else the command line, lays over it. Throws
+/// Error.
 Imported load(const Context& context, const std::vector<std::filesystem::path>& inputs);
+Imported load(const Context& context, const std::vector<std::filesystem::path>& inputs,
+              const LoadOptions& options);
+
+/// With the mask read. Throws Error (input).
+CompareOptions compare_options(const Judging& judging);
 
 /// Warns of what could not be carried over; with --strict throws Error (input) if there is any.
 void report_losses(const Context& context, const Losses& losses);
@@ -44,7 +50,7 @@ struct Rendered {
 
 /// Renders with the number of threads of the command line, under a progress bar.
 Rendered render_scene(const Context& context, const NormalisedScene& scene,
-                      const RenderOptions& options, const std::string& name);
+                      const RenderOptions& options, const std::string& name, bool quiet = false);
 
 /// Samples in a whole picture, for the rate of the progress bar.
 double sample_count(const RenderOptions& options);

@@ -56,6 +56,35 @@ bool is_plain(const std::string& word) {
     return !word.empty() && word.find_first_not_of(plain) == std::string::npos;
 }
 
+constexpr const char* box_form = "X0,Y0,X1,Y1 in whole pixels with X0 < X1 and Y0 < Y1";
+
+// POSIX shell's quoting (IEEE 1003.1, section 2.2) without any expansion.
+std::vector<std::string> split_words(const std::string& option, const std::string& text) {
+    std::vector<std::string> words;
+    bool in_word = false;
+    char quote = '\0';
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        const bool escapes = c == '\\' && quote != '\'';
+        if (quote == '\0' && (c == ' ' || c == '\t' || c == '\n')) {
+            in_word = false;
+            continue;
+        }
+        if (!in_word) words.emplace_back();
+        in_word = true;
+        if (escapes && i + 1 < text.size())
+            words.back() += text[++i];
+        else if (quote == '\0' && (c == '\'' || c == '"'))
+            quote = c;
+        else if (c == quote && quote != '\0')
+            quote = '\0';
+        else
+            words.back() += c;
+    }
+    if (quote != '\0') refuse(option, text, "a command whose quotes are closed");
+    return words;
+}
+
 }  // namespace
 
 int read_integer(const std::string& option, std::string_view text, Range range) {
@@ -98,6 +127,50 @@ Color read_color(const std::string& option, const std::string& text) {
         if (i < 2) rest.remove_prefix(comma + 1);
     }
     return color;
+}
+
+PixelBox read_box(const std::string& option, const std::string& text) {
+    std::array<int, 4> sides{};
+    std::string_view rest = text;
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+        const auto comma = i + 1 < sides.size() ? rest.find(',') : rest.size();
+        const auto value =
+            comma == std::string_view::npos ? std::nullopt : number_of<int>(rest.substr(0, comma));
+        if (!value || *value < 0) refuse(option, text, box_form);
+        sides[i] = *value;
+        if (i + 1 < sides.size()) rest.remove_prefix(comma + 1);
+    }
+    const auto [x0, y0, x1, y1] = sides;
+    if (x0 >= x1 || y0 >= y1) refuse(option, text, box_form);
+    return {x0, y0, x1, y1};
+}
+
+std::pair<std::string, double> read_limit(const std::string& option, const std::string& text) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos || equals == 0)
+        refuse(option, text, "METRIC=NUMBER, such as bias=0.002");
+    return {text.substr(0, equals),
+            read_number(option, std::string_view(text).substr(equals + 1), {-1e9, 1e9})};
+}
+
+OtherRenderer read_renderer(const std::string& option, const std::string& text) {
+    const auto equals = text.find('=');
+    OtherRenderer result = {.name = text.substr(0, equals)};
+    const auto plain = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               c == '-' || c == '_' || c == '.';
+    };
+    if (equals == std::string::npos || result.name.empty() || result.name.front() == '.' ||
+        !std::ranges::all_of(result.name, plain))
+        refuse(option, text,
+               "NAME=COMMAND with a name of letters, digits, '.', '-' and '_', such as "
+               "'Cycles=render.sh {pov} {out}'");
+    result.words = split_words(option, text.substr(equals + 1));
+    if (std::ranges::none_of(result.words, [](const std::string& word) {
+            return word.find("{out") != std::string::npos;
+        }))
+        refuse(option, text, "a command with {out} where the picture's file name belongs");
+    return result;
 }
 
 // TOML 1.0, section "String".
@@ -146,6 +219,8 @@ std::size_t read_choice(const std::string& option, std::string_view text,
                         const std::vector<std::string>& words) {
     const auto found = std::find(words.begin(), words.end(), text);
     if (found != words.end()) return std::size_t(found - words.begin());
+    if (words.size() == 1)
+        throw Error(Failure::usage, option, fmt::format("'{}' is not {}", text, words[0]));
     const std::vector<std::string> others(words.begin(), words.end() - 1);
     throw Error(Failure::usage, option,
                 fmt::format("'{}' is not {} or {}", text, fmt::join(others, ", "), words.back()));

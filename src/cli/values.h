@@ -1,11 +1,14 @@
 // The text of an option -> its value. `option` is for messages; all throw Error (usage).
 #pragma once
 
+#include "arguments.h"
+
 #include "penumbra/math.h"
 
 #include <array>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace penumbra::cli {
@@ -26,6 +29,16 @@ std::array<int, 2> read_size(const std::string& option, std::string_view text);
 
 /// "0.1,0.2,0.3", linear and not negative.
 Color read_color(const std::string& option, const std::string& text);
+
+/// "10,20,110,220": x0 < x1 and y0 < y1.
+PixelBox read_box(const std::string& option, const std::string& text);
+
+/// "bias=0.002".
+std::pair<std::string, double> read_limit(const std::string& option, const std::string& text);
+
+/// "Cycles=render.sh --size {width} '{pov}'": a name and a command, split into words as a shell
+/// would, of which nothing is expanded.
+OtherRenderer read_renderer(const std::string& option, const std::string& text);
 
 /// A TOML basic string of `text`, quotes included.
 std::string toml_string(const std::string& text);

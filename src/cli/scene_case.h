@@ -1,0 +1,29 @@
+// One scene: rendered by both, compared, and left in the report.
+#pragma once
+
+#include "case_cache.h"
+#include "commands.h"
+#include "report_folder.h"
+
+namespace penumbra::cli {
+
+/// A scene to validate and where its files go.
+struct SceneJob {
+    std::vector<std::filesystem::path> inputs = {};
+    std::string name = {};
+    std::string folder = {};  ///< below the report's; empty: the report's own
+    LoadOptions load = {};
+    Judging judging = {};
+    std::vector<std::string> words = {};  ///< the command that validates it alone
+    std::string povray = {};              ///< its version
+    int threads = 0;                      ///< 0: all
+    bool quiet = false;                   ///< no progress bars
+};
+
+/// Renders, exports, runs POV-Ray and further renderers and compares; `cases` gets one case for
+/// POV-Ray and one for each of the others. What an earlier run has left in the final report is
+/// taken where nothing has changed. Throws Error.
+void validate_scene(const Context& context, const SceneJob& job, ReportFolder& report,
+                    std::vector<Case>& cases);
+
+}  // namespace penumbra::cli
