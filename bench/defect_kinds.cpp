@@ -234,6 +234,9 @@ std::vector<Defect> of_light() {
     return {{"light 5 % brighter", {"light"}, has_lights, each_light([](Light& l) {
                  l.intensity *= 1.05;
              })},
+            {"first light 3 % dimmer", {"light"}, has_lights, changed([](const Stage&, Scene& s) {
+                 s.lights.front().intensity *= 0.97;
+             })},
             {"one light missing",
              {"light_missing"},
              [](const Stage& s) { return s.scene.scene.lights.size() > 1; },
@@ -255,6 +258,9 @@ std::vector<Defect> of_light() {
             {"delta doubled", {"penumbra"}, has_soft_light, each_light([](Light& l) {
                  l.penumbra.delta *= 2;
              })},
+            {"delta 0.6 times as large", {"penumbra"}, has_soft_light, each_light([](Light& l) {
+                 l.penumbra.delta *= 0.6;
+             })},
             {"another background",
              {"background"},
              [](const Stage& s) { return s.behind > enough(s); },
@@ -273,6 +279,10 @@ std::vector<Defect> of_surfaces() {
          {"shininess"},
          any_material(shines),
          each_material([](Material& m) { m.shininess *= 1.5F; })},
+        {"shininess 0.7 times as high",
+         {"shininess"},
+         any_material(shines),
+         each_material([](Material& m) { m.shininess *= 0.7F; })},
         {"reflection missing",
          {"reflection"},
          any_material(mirrors),
@@ -281,6 +291,10 @@ std::vector<Defect> of_surfaces() {
          {"reflection"},
          any_material(mirrors),
          each_material([](Material& m) { m.reflection *= 2 / 3.F; })},
+        {"reflection a fifth stronger",
+         {"reflection"},
+         any_material(mirrors),
+         each_material([](Material& m) { m.reflection *= 1.2F; })},
         {"recursion depth 2",
          {"depth"},
          [](const Stage& s) { return s.options.max_depth > 2 && count_visible(s, mirrors) > 1; },

@@ -312,3 +312,30 @@ TEST_CASE("other renderers get cases of their own") {
     CHECK(without.status == 2);
     CHECK(without.err.find("{out}") != std::string::npos);
 }
+
+TEST_CASE("a scene that penumbra crashes on does not stop the others") {
+    if (!has_povray()) PENUMBRA_SKIP("POV-Ray is not installed");
+    const TempDir folder;
+    for (const char* name : {"a.toml", "bad.toml", "c.toml", "d.toml"})
+        test::write(folder / name, small_scene);
+    // A renderer that ends the program that started it as a fault of its own would.
+    const std::string renderer =
+        std::string("Killer=sh -c 'case $1 in *bad*) kill -SEGV $PPID; sleep 5;; *) exec ") +
+        PENUMBRA_PROGRAM + " render $1 -q -o $2;; esac' sh {scene} {out:exr}";
+    for (const char* jobs : {"1", "2"}) {
+        const Ended ended = run(folder.path, {"validate", "--each", "a.toml", "bad.toml", "c.toml",
+                                              "d.toml", "--fresh", "--jobs", jobs, "--renderer",
+                                              renderer, "--report", "all"});
+        INFO(ended.err);
+        CHECK(ended.status == 70);
+        CHECK(ended.err.find("bad: penumbra crashed on it") != std::string::npos);
+        const json cases = cases_in(folder / "all");
+        REQUIRE(cases.size() == 7);
+        CHECK(named(cases, "bad")["verdict"] == "error");
+        for (const char* name : {"a", "c", "d", "a [Killer]", "c [Killer]", "d [Killer]"})
+            CHECK(named(cases, name)["verdict"] == "pass");
+        CHECK(fs::exists(folder / "all/bad/index.html"));
+        for (const auto& entry : fs::recursive_directory_iterator(folder.path))
+            CHECK(entry.path().extension() != ".tmp");
+    }
+}

@@ -34,7 +34,8 @@ constexpr std::array kinds = {
     Kind{"flip_edges", false},     Kind{"parity_inside", true},  Kind{"hdr_flip", false}};
 
 void check_names(const Limits& limits) {
-    for (const auto& [name, limit] : limits.limits) {
+    for (const auto& entry : limits.limits) {
+        const std::string& name = entry.first;
         const auto same = [&](const Kind& kind) { return kind.name == name; };
         if (std::ranges::any_of(kinds, same)) continue;
         std::string known;

@@ -19,13 +19,13 @@ int note_failure(Case& result, int status, const std::string& message) {
     return status;
 }
 
-std::vector<Outcome> outcomes_of(const Job& job, bool alone) {
+std::vector<Outcome> outcomes_of(const Job& job, bool alone, bool again) {
     std::vector<Case> cases(1);
     cases[0].name = job.name;
     int status = exit_success;
     std::exception_ptr failure;
     try {
-        job.run(cases);
+        job.run(cases, again);
     } catch (const Error& error) {
         failure = std::current_exception();
         // With several scenes a setting that does not suit one of them is that scene's fault.
@@ -68,20 +68,47 @@ std::vector<Case> by_severity(std::vector<Case> cases) {
     return cases;
 }
 
+// A fault of penumbra's that no catch can mend.
+std::vector<Outcome> crashed(const Job& job) {
+    const Error error(Failure::input, job.name,
+                      "penumbra crashed on it; please report this with the scene");
+    Outcome outcome = {.status = exit_internal};
+    outcome.result.name = job.name;
+    note_failure(outcome.result, exit_internal, error.what());
+    if (job.give_up) job.give_up(outcome.result, error);
+    return {std::move(outcome)};
+}
+
+// Runs a job and notes in `progress` how far it is.
+std::vector<Outcome> supervised(const Job& job, std::atomic<int>& state, bool only_one) {
+    if (state == Progress::crashed) return crashed(job);
+    const bool again =
+        state.exchange(only_one ? Progress::running_alone : Progress::running) == Progress::done;
+    auto outcomes = outcomes_of(job, false, again);
+    state = Progress::done;
+    return outcomes;
+}
+
 }  // namespace
 
 std::vector<Outcome> run_jobs(const Context& context, const std::vector<Job>& jobs, int at_once,
                               bool alone) {
     std::vector<std::vector<Outcome>> outcomes(jobs.size());
     std::atomic<std::size_t> next = 0, done = 0;
+    const auto run = [&](std::size_t i, bool only_one) {
+        if (context.stop.stop_requested()) return;
+        outcomes[i] = context.progress ? supervised(jobs[i], (*context.progress)[i], only_one)
+                                       : outcomes_of(jobs[i], alone, false);
+        ++done;
+        for (const Outcome& outcome : outcomes[i])
+            if (!alone) say(context, outcome, done, jobs.size());
+    };
+    // After a crash those that may have caused it run one by one, which tells them apart.
+    for (std::size_t i = 0; context.progress && i < jobs.size(); ++i)
+        if ((*context.progress)[i] == Progress::suspect) run(i, true);
     const auto worker = [&] {
-        for (std::size_t i = next++; i < jobs.size(); i = next++) {
-            if (context.stop.stop_requested()) return;
-            outcomes[i] = outcomes_of(jobs[i], alone);
-            ++done;
-            for (const Outcome& outcome : outcomes[i])
-                if (!alone) say(context, outcome, done, jobs.size());
-        }
+        for (std::size_t i = next++; i < jobs.size(); i = next++)
+            if (outcomes[i].empty()) run(i, at_once == 1);
     };
     {
         std::vector<std::jthread> helpers;

@@ -16,8 +16,11 @@ namespace penumbra::cli {
 struct Job {
     std::string name = {};
     /// Fills `cases`, which has one of that name, step by step, so that a failing step leaves what
-    /// was found before it. Throws Error. Pictures may be dropped when they are no longer needed.
-    std::function<void(std::vector<Case>& cases)> run = {};
+    /// was found before it. `again` says that it was already done before another job crashed.
+    /// Throws Error.
+    std::function<void(std::vector<Case>& cases, bool again)> run = {};
+    /// Leaves in the report that this very job has crashed; may be empty.
+    std::function<void(Case& one, const Error& crash)> give_up = {};
 };
 
 struct Outcome {

@@ -3,6 +3,7 @@
 
 #include "arguments.h"
 #include "console.h"
+#include "supervisor.h"
 
 #include <stop_token>
 
@@ -28,6 +29,7 @@ struct Context {
     const Arguments& arguments;
     Console& console;
     std::stop_token stop;
+    Progress* progress = nullptr;  ///< of a supervised batch
 };
 
 int render(const Context& context);

@@ -83,7 +83,7 @@ int compare(const Context& context) {
     Names names;
     for (const PicturePair& pair : pairs) {
         const std::string folder = several ? names.unused(folder_name(pair.name)) : "";
-        jobs.push_back({pair.name, [&, pair, folder](std::vector<Case>& cases) {
+        jobs.push_back({pair.name, [&, pair, folder](std::vector<Case>& cases, bool) {
                             Case& result = cases[0];
                             result.folder = folder;
                             result.commands = {several ? own_command(arguments, pair)

@@ -25,12 +25,12 @@ int exit_status(Failure failure) {
 
 namespace {
 
-int run(const Arguments& arguments, Console& console) {
+int run(const Arguments& arguments, Console& console, Progress* progress) {
     const Interruption interruption;
     std::optional<tbb::global_control> limit;
     if (arguments.threads > 0)
         limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(arguments.threads));
-    const Context context = {arguments, console, interruption.token()};
+    const Context context = {arguments, console, interruption.token(), progress};
     switch (arguments.command) {
     case Command::render: return render(context);
     case Command::export_scene: return export_scene(context);
@@ -71,9 +71,18 @@ int program(int argc, const char* const* argv) {
     if (!parsed.arguments) return status;
     const Arguments& arguments = *parsed.arguments;
     Console console({arguments.quiet, arguments.verbose, arguments.color});
-    const int ending = guarded(console, [&] { return run(arguments, console); });
-    wait_for_image_module();
-    return ending;
+    const auto whole = [&](Progress* progress) {
+        const int ending = guarded(console, [&] { return run(arguments, console, progress); });
+        wait_for_image_module();
+        return ending;
+    };
+    const bool batch = arguments.command == Command::validate &&
+                       (arguments.each || arguments.manifest.has_value());
+    if (!batch) return whole(nullptr);
+    return guarded(console, [&] {
+        Progress progress;
+        return supervise(progress, [&] { return whole(&progress); });
+    });
 }
 
 }  // namespace

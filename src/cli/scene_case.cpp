@@ -39,8 +39,8 @@ Prepared prepare(const Context& context, const SceneJob& job) {
 // One scene's way through all steps.
 class SceneRun {
   public:
-    SceneRun(const Context& with, const SceneJob& of, ReportFolder& into, std::vector<Case>& to)
-        : context(with), job(of), report(into), cases(to),
+    SceneRun(const Context& with, const SceneJob& of, ReportFolder& into, const SceneCases& to)
+        : context(with), job(of), report(into), cases(to.cases), reuse(to.reuse),
           compared_by(compare_options(of.judging)) {
         cases[0].name = job.name;
         cases[0].folder = job.folder;
@@ -57,7 +57,7 @@ class SceneRun {
         make_folder(job.folder);
         export_scene();
         const CaseKey key = job.folder.empty() ? CaseKey() : key_of_case();
-        if (!job.folder.empty() && !context.arguments.fresh && restore(key)) return;
+        if (!job.folder.empty() && reuse && restore(key)) return;
         preload_image_module();  // while the picture is rendered
         render_ours();
         run_povray_on_it();
@@ -71,6 +71,7 @@ class SceneRun {
     const SceneJob& job;
     ReportFolder& report;
     std::vector<Case>& cases;
+    bool reuse;
     CompareOptions compared_by;
     Prepared prepared = {};
 
@@ -160,12 +161,32 @@ class SceneRun {
         cases.push_back(std::move(other));
     }
 
+    // The reference with our own pixels where they do not count.
+    Image without_ignored(const Case& one) const {
+        Image result = one.reference;
+        const Image& mask = compared_by.mask;
+        const float black = srgb_to_linear(1.0F / 255);
+        const auto ignored = [&](int x, int y) {
+            if (!mask.pixels.empty()) {
+                const Color& c = mask.at(x, y);
+                if (std::max({c.x, c.y, c.z}) <= black) return true;
+            }
+            return std::ranges::any_of(compared_by.ignored, [&](const PixelBox& b) {
+                return x >= b.x0 && x < b.x1 && y >= b.y0 && y < b.y1;
+            });
+        };
+        for (int y = 0; y < result.height; ++y)
+            for (int x = 0; x < result.width; ++x)
+                if (ignored(x, y)) result.at(x, y) = one.test.at(x, y);
+        return result;
+    }
+
     void judge(Case& one) {
         const Stopwatch watch;
         one.comparison = penumbra::compare(one.test, one.reference, compared_by);
         if (one.comparison.verdict == Verdict::fail)
-            explain(prepared.scene, prepared.options, one.test, one.reference, one.comparison,
-                    {.stop = context.stop});
+            explain(prepared.scene, prepared.options, one.test, without_ignored(one),
+                    one.comparison, {.stop = context.stop});
         one.seconds["compare"] = watch.seconds();
         save_maps(report.path(), one);
     }
@@ -244,10 +265,10 @@ class SceneRun {
     }
 };
 
-// The page of a scene that failed says why.
-void keep_failure(const Error& error, ReportFolder& report, std::vector<Case>& cases) {
-    if (cases[0].folder.empty() || error.failure == Failure::interrupted) return;
-    Case& failed = cases[0];
+}  // namespace
+
+void keep_failure(const Error& error, ReportFolder& report, Case& failed) {
+    if (failed.folder.empty() || error.failure == Failure::interrupted) return;
     failed.message = error.what();
     failed.comparison.verdict = Verdict::error;
     std::error_code ignored;
@@ -256,21 +277,20 @@ void keep_failure(const Error& error, ReportFolder& report, std::vector<Case>& c
     report.publish(failed.folder);
 }
 
-}  // namespace
-
 void validate_scene(const Context& context, const SceneJob& job, ReportFolder& report,
-                    std::vector<Case>& cases) {
+                    const SceneCases& into) {
+    std::vector<Case>& cases = into.cases;
     cases[0].folder = job.folder;
     try {
-        SceneRun(context, job, report, cases).run();
+        SceneRun(context, job, report, into).run();
     } catch (const Error& error) {
         cases.resize(1);
-        keep_failure(error, report, cases);
+        keep_failure(error, report, cases[0]);
         throw;
     } catch (const std::exception& error) {
         cases.resize(1);
         keep_failure(Error(Failure::input, "", fmt::format("internal error: {}", error.what())),
-                     report, cases);
+                     report, cases[0]);
         throw;
     }
 }

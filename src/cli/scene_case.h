@@ -20,10 +20,19 @@ struct SceneJob {
     bool quiet = false;                   ///< no progress bars
 };
 
-/// Renders, exports, runs POV-Ray and further renderers and compares; `cases` gets one case for
-/// POV-Ray and one for each of the others. What an earlier run has left in the final report is
-/// taken where nothing has changed. Throws Error.
+/// Where the cases of a scene go: the first is there.
+struct SceneCases {
+    std::vector<Case>& cases;
+    bool reuse =
+        true;  ///< what an earlier run has left in the final report, if nothing has changed
+};
+
+/// Renders, exports, runs POV-Ray and further renderers and compares: one case for POV-Ray and one
+/// for each of the others. Throws Error.
 void validate_scene(const Context& context, const SceneJob& job, ReportFolder& report,
-                    std::vector<Case>& cases);
+                    const SceneCases& into);
+
+/// Leaves the page of a case that failed, which says why, in the final report.
+void keep_failure(const Error& error, ReportFolder& report, Case& failed);
 
 }  // namespace penumbra::cli

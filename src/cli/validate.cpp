@@ -110,8 +110,14 @@ int validate(const Context& context) {
     ReportFolder folder(report);
     std::vector<Job> jobs;
     for (const SceneJob& scene : scenes)
-        jobs.push_back({scene.name, [&context, &scene, &folder](std::vector<Case>& cases) {
-                            validate_scene(context, scene, folder, cases);
+        jobs.push_back({scene.name,
+                        [&context, &scene, &folder](std::vector<Case>& cases, bool again) {
+                            const bool reuse = again || !context.arguments.fresh;
+                            validate_scene(context, scene, folder, {cases, reuse});
+                        },
+                        [&scene, &folder](Case& one, const Error& crash) {
+                            one.folder = scene.folder;
+                            keep_failure(crash, folder, one);
                         }});
     const bool alone = scenes.size() == 1 && scenes[0].folder.empty();
     auto outcomes = run_jobs(context, jobs, arguments.jobs, alone);
