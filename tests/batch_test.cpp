@@ -300,7 +300,7 @@ TEST_CASE("other renderers get cases of their own") {
     const json cases = cases_in(folder / "all");
     REQUIRE(cases.size() == 4);
     CHECK(named(cases, "scene")["verdict"] == "pass");
-    const json& same = named(cases, "scene [Same]");
+    const json same = named(cases, "scene [Same]");
     CHECK(same["verdict"] == "pass");
     CHECK(same["reference"] == "Same");
     CHECK(same["metrics"]["exactness"]["value"] == 1.0);
