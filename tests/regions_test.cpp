@@ -23,6 +23,20 @@ void fill(Image& image, const PixelBox& box, const Color& color) {
 
 }  // namespace
 
+TEST_CASE("A masked reference has the test's pixels where they are ignored and its own elsewhere") {
+    const Image reference = constant(8, 6, Color(0.5F)), test = constant(8, 6, Color(0.25F));
+    CompareOptions options;
+    options.ignored = {{1, 2, 3, 4}};
+    options.mask = constant(8, 6, Color(1));
+    options.mask.at(7, 5) = Color(0);
+    const Image masked = masked_reference(test, reference, options);
+    for (int y = 0; y < 6; ++y)
+        for (int x = 0; x < 8; ++x) {
+            const bool ignored = (x >= 1 && x < 3 && y >= 2 && y < 4) || (x == 7 && y == 5);
+            CHECK(masked.at(x, y) == (ignored ? test : reference).at(x, y));
+        }
+}
+
 TEST_CASE("Ignored pixels count nowhere") {
     const Image reference = disc(96, 64);
     Image test = reference;

@@ -99,3 +99,15 @@ cv::Mat matched_pixels(const cv::Mat& test_encoded, const cv::Mat& reference_enc
 }
 
 }  // namespace penumbra::metrics
+
+namespace penumbra {
+
+Image masked_reference(const Image& test, Image reference, const CompareOptions& options) {
+    const cv::Mat counted = metrics::counted_pixels(options, test.width, test.height);
+    for (int y = 0; y < test.height; ++y)
+        for (int x = 0; x < test.width; ++x)
+            if (counted.at<uchar>(y, x) == 0) reference.at(x, y) = test.at(x, y);
+    return reference;
+}
+
+}  // namespace penumbra

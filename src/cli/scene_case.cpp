@@ -161,32 +161,13 @@ class SceneRun {
         cases.push_back(std::move(other));
     }
 
-    // The reference with our own pixels where they do not count.
-    Image without_ignored(const Case& one) const {
-        Image result = one.reference;
-        const Image& mask = compared_by.mask;
-        const float black = srgb_to_linear(1.0F / 255);
-        const auto ignored = [&](int x, int y) {
-            if (!mask.pixels.empty()) {
-                const Color& c = mask.at(x, y);
-                if (std::max({c.x, c.y, c.z}) <= black) return true;
-            }
-            return std::ranges::any_of(compared_by.ignored, [&](const PixelBox& b) {
-                return x >= b.x0 && x < b.x1 && y >= b.y0 && y < b.y1;
-            });
-        };
-        for (int y = 0; y < result.height; ++y)
-            for (int x = 0; x < result.width; ++x)
-                if (ignored(x, y)) result.at(x, y) = one.test.at(x, y);
-        return result;
-    }
-
     void judge(Case& one) {
         const Stopwatch watch;
         one.comparison = penumbra::compare(one.test, one.reference, compared_by);
         if (one.comparison.verdict == Verdict::fail)
-            explain(prepared.scene, prepared.options, one.test, without_ignored(one),
-                    one.comparison, {.stop = context.stop});
+            explain(prepared.scene, prepared.options, one.test,
+                    masked_reference(one.test, one.reference, compared_by), one.comparison,
+                    {.stop = context.stop});
         one.seconds["compare"] = watch.seconds();
         save_maps(report.path(), one);
     }

@@ -85,6 +85,10 @@ struct CompareOptions {
 /// Verdict::not_comparable.
 Comparison compare(const Image& test, const Image& reference, const CompareOptions& options = {});
 
+/// `reference` with the pixels of `test` where `options` ignores them, for explain(). Precondition:
+/// the pictures and the mask have one size.
+Image masked_reference(const Image& test, Image reference, const CompareOptions& options);
+
 /// What the scene that `test` was rendered from tells of a comparison that failed: it is rendered
 /// with one thing changed at a time (no shadows, no highlights, another field of view, an object
 /// missing, ...), and what brings it close to `reference` is the cause. Replaces comparison.cause and
