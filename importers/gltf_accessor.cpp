@@ -1,5 +1,6 @@
 // Accessors -> numbers.
 #include "gltf.h"
+#include "parallel.h"
 
 #include <fmt/format.h>
 
@@ -52,10 +53,14 @@ void with_component(int type, Work&& work) {
 void copy_floats(const Elements& elements, std::size_t count, int width, float* out) {
     with_component(elements.component_type, [&](auto sample) {
         using T = decltype(sample);
-        const std::byte* from = elements.data;
-        for (std::size_t i = 0; i < count; ++i, from += elements.stride)
-            for (int c = 0; c < width; ++c)
-                *out++ = as_float(load<T>(from + std::size_t(c) * sizeof(T)), elements.normalized);
+        for_each_block(count, [&](std::size_t first, std::size_t last) {
+            const std::byte* from = elements.data + first * elements.stride;
+            float* to = out + first * std::size_t(width);
+            for (std::size_t i = first; i < last; ++i, from += elements.stride)
+                for (int c = 0; c < width; ++c)
+                    *to++ =
+                        as_float(load<T>(from + std::size_t(c) * sizeof(T)), elements.normalized);
+        });
     });
 }
 

@@ -1,9 +1,11 @@
 // Attributes of glTF primitives, with their morph targets -> the vertices of a Mesh.
 #include "gltf_mesh.h"
+#include "parallel.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
 
@@ -118,15 +120,20 @@ void check_weights(const Part& part) {
 // Unit normals; those of length zero become the mean of the facets around them. In double, as the
 // square of a float may be out of range.
 void repair_normals(const Part& part, Mesh& mesh) {
+    std::atomic<bool> complete = true;
+    for_each_block(mesh.normals.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            const Vec3 normal(mesh.normals[i]);
+            if (const double length = normal.length(); length > 1e-6)
+                mesh.normals[i] = Vec3f(normal / length);
+            else
+                complete = false;
+        }
+    });
+    if (complete) return;
     std::map<Index, Vec3> missing;
-    for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
-        const Vec3 normal(mesh.normals[i]);
-        if (const double length = normal.length(); length > 1e-6)
-            mesh.normals[i] = Vec3f(normal / length);
-        else
-            missing.emplace(Index(i), Vec3(0));
-    }
-    if (missing.empty()) return;
+    for (std::size_t i = 0; i < mesh.normals.size(); ++i)
+        if (!(Vec3(mesh.normals[i]).length() > 1e-6)) missing.emplace(Index(i), Vec3(0));
     part.reader.lose_in_primitive(
         part.pointer + "/attributes/NORMAL",
         fmt::format("{} of {} normals have no length; those of the facets are used", missing.size(),

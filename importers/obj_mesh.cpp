@@ -1,4 +1,5 @@
 #include "obj.h"
+#include "parallel.h"
 #include "triangulate.h"
 
 #include <algorithm>
@@ -50,6 +51,9 @@ Index merged(std::span<const Corner> from, Index Corner::*member, Blend blend) {
     return same ? first : blend();
 }
 
+// How many faces are cut into triangles at a time.
+constexpr std::size_t run_length = std::size_t(1) << 17;
+
 // Makes one mesh after the other. A vertex is what has one position, texture coordinate and
 // normal; those of one position are chained.
 struct Builder {
@@ -65,7 +69,7 @@ struct Builder {
     std::vector<Vertex> vertices = {};
     std::vector<Index> touched = {};  // positions in `first`
     std::vector<Corner> corners = {};
-    std::vector<Vec3> outline = {};
+    std::vector<Triangulation> cuts = {};  // of a run of faces; empty for triangles
     Mesh mesh = {};
     bool smooth = false, textured = false;
 
@@ -148,10 +152,7 @@ struct Builder {
         return corner;
     }
 
-    void polygon(const Face& face) {
-        outline.clear();
-        for (const Corner& corner : corners) outline.push_back(model.positions[corner.position]);
-        const Triangulation result = triangulate(outline);
+    void polygon(const Face& face, const Triangulation& result) {
         if (result.tangled)
             tally.add("a polygon crosses itself too often; it is cut as if it were convex",
                       face.line);
@@ -165,7 +166,7 @@ struct Builder {
             triangle({corners[t[0]], corners[t[1]], corners[t[2]]});
     }
 
-    void begin(const Part& part, const std::vector<Index>& faces, bool mapped) {
+    void begin(const Part& part, std::span<const Index> faces, bool mapped) {
         mesh = {.name = part.name, .material = part.material};
         smooth = textured = false;
         std::size_t facets = 0;
@@ -189,17 +190,38 @@ struct Builder {
         vertices.clear();
     }
 
-    Mesh build(const Part& part, const std::vector<Index>& faces, bool mapped) {
-        begin(part, faces, mapped);
-        for (const Index i : faces) {
-            const Face face = model.faces[i];
+    void cut(std::span<const Index> faces) {
+        cuts.resize(faces.size());
+        for_each_block(faces.size(), [&](std::size_t from, std::size_t to) {
+            std::vector<Vec3> outline;
+            for (std::size_t k = from; k < to; ++k) {
+                const Face& face = model.faces[faces[k]];
+                if (face.count == 3) continue;
+                outline.clear();
+                for (const Corner& corner : model.corners_of(face))
+                    outline.push_back(model.positions[corner.position]);
+                cuts[k] = triangulate(outline);
+            }
+        });
+    }
+
+    void add(std::span<const Index> faces) {
+        cut(faces);
+        for (std::size_t k = 0; k < faces.size(); ++k) {
+            const Face face = model.faces[faces[k]];
             const auto given = model.corners_of(face);
             corners.assign(given.begin(), given.end());
             if (face.count == 3)
                 triangle({corners[0], corners[1], corners[2]});
             else
-                polygon(face);
+                polygon(face, cuts[k]);
         }
+    }
+
+    Mesh build(const Part& part, std::span<const Index> faces, bool mapped) {
+        begin(part, faces, mapped);
+        for (std::size_t from = 0; from < faces.size(); from += run_length)
+            add(faces.subspan(from, std::min(run_length, faces.size() - from)));
         return std::move(mesh);
     }
 };

@@ -1,4 +1,5 @@
 #include "obj.h"
+#include "parallel.h"
 #include "triangulate.h"
 
 #include <algorithm>
@@ -15,6 +16,9 @@ double corner_angle(const Vec3& before, const Vec3& at, const Vec3& after, const
     return angle < 0 ? angle + radians(360) : angle;
 }
 
+// How many faces' angles are in memory at a time.
+constexpr std::size_t run_length = std::size_t(1) << 18;
+
 // Gives the corners of one smoothing group after the other the mean normal of its facets.
 // Positions are told apart by index, so that both sides of a sheet modelled twice stay apart.
 struct Smoother {
@@ -25,8 +29,9 @@ struct Smoother {
     };
     Model& model;
     std::vector<Index> sum_of = std::vector<Index>(model.positions.size(), no_index);
-    std::vector<Sum> sums = {};  // of the current group
-    std::vector<Vec3> outline = {};
+    std::vector<Sum> sums = {};       // of the current group
+    std::vector<Vec3> normals = {};   // of a run of faces; zero: without area
+    std::vector<double> angles = {};  // of their corners, one face after the other
 
     Sum& sum_at(Index position) {
         Index& at = sum_of[position];
@@ -37,29 +42,50 @@ struct Smoother {
         return sums[at];
     }
 
+    void measure(std::span<const Index> faces) {
+        std::vector<std::size_t> first_angle(faces.size());
+        std::size_t count = 0;
+        for (std::size_t k = 0; k < faces.size(); ++k) {
+            first_angle[k] = count;
+            count += model.faces[faces[k]].count;
+        }
+        normals.resize(faces.size());
+        angles.resize(count);
+        for_each_block(faces.size(), [&](std::size_t first, std::size_t last) {
+            std::vector<Vec3> outline;
+            for (std::size_t k = first; k < last; ++k) {
+                outline.clear();
+                for (const Corner& corner : model.corners_of(model.faces[faces[k]]))
+                    outline.push_back(model.positions[corner.position]);
+                const Vec3 area = newell_normal(outline);
+                normals[k] = area.length() > 0 ? area.normalized() : Vec3(0);
+                const std::size_t n = outline.size();
+                for (std::size_t i = 0; i < n; ++i)
+                    angles[first_angle[k] + i] = corner_angle(outline[(i + n - 1) % n], outline[i],
+                                                              outline[(i + 1) % n], normals[k]);
+            }
+        });
+    }
+
     // Each facet's normal is weighted by its angle at the corner, so that the result does not
     // depend on how a surface is cut into facets (Thuermer and Wuethrich 1998, "Computing Vertex
     // Normals from Polygonal Facets").
-    void add(const Face& face) {
-        const auto corners = model.corners_of(face);
-        const std::size_t n = corners.size();
-        outline.clear();
-        for (const Corner& corner : corners) outline.push_back(model.positions[corner.position]);
-        const Vec3 area = newell_normal(outline);
-        const Vec3 normal = area.length() > 0 ? area.normalized() : Vec3(0);
-        for (std::size_t i = 0; i < n; ++i) {
-            const double angle =
-                corner_angle(outline[(i + n - 1) % n], outline[i], outline[(i + 1) % n], normal);
-            Sum& sum = sum_at(corners[i].position);
-            sum.sum += normal * angle;
-            sum.weight += angle;
-        }
+    void add(std::span<const Index> faces) {
+        measure(faces);
+        const double* angle = angles.data();
+        for (std::size_t k = 0; k < faces.size(); ++k)
+            for (const Corner& corner : model.corners_of(model.faces[faces[k]])) {
+                Sum& sum = sum_at(corner.position);
+                sum.sum += normals[k] * *angle;
+                sum.weight += *angle++;
+            }
     }
 
     // `faces` are all of one group. Where normals cancel the corner stays flat.
     void smooth(std::span<const Index> faces) {
-        for (const Index face : faces) add(model.faces[face]);
-        std::vector<Index> normals(sums.size(), no_index);
+        for (std::size_t first = 0; first < faces.size(); first += run_length)
+            add(faces.subspan(first, std::min(run_length, faces.size() - first)));
+        std::vector<Index> normal_of(sums.size(), no_index);
         for (const Index i : faces) {
             const Face& face = model.faces[i];
             for (std::size_t k = face.first; k < face.first + face.count; ++k) {
@@ -68,11 +94,11 @@ struct Smoother {
                 const Index at = sum_of[corner.position];
                 const Sum& sum = sums[at];
                 if (!(sum.sum.length() > 1e-9 * sum.weight)) continue;
-                if (normals[at] == no_index) {
-                    normals[at] = Index(model.normals.size());
+                if (normal_of[at] == no_index) {
+                    normal_of[at] = Index(model.normals.size());
                     model.normals.push_back(sum.sum.normalized());
                 }
-                corner.normal = normals[at];
+                corner.normal = normal_of[at];
             }
         }
         for (const Sum& sum : sums) sum_of[sum.position] = no_index;

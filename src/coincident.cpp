@@ -1,4 +1,6 @@
 // Facets that lie exactly on one another: which of them a ray hits is a matter of rounding.
+#include "parallel.h"
+
 #include "penumbra/scene.h"
 
 #include <algorithm>
@@ -40,9 +42,11 @@ void each_facet(const Scene& scene, const std::vector<Index>& instances, Visit v
     std::vector<std::uint64_t> hashes;
     for (const Index i : instances) {
         const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
-        hashes.clear();
-        for (const Vec3f& p : mesh.positions)
-            hashes.push_back(hash_of(placed_point(p, scene.instances[i])));
+        hashes.resize(mesh.positions.size());
+        for_each_block(hashes.size(), [&](std::size_t first, std::size_t last) {
+            for (std::size_t k = first; k < last; ++k)
+                hashes[k] = hash_of(placed_point(mesh.positions[k], scene.instances[i]));
+        });
         for (Index k = 0; k < mesh.triangles.size(); ++k) {
             const auto& [a, b, c] = mesh.triangles[k];
             visit(Placed{mixed(hashes[a] + hashes[b] + hashes[c]), i, k});

@@ -3,6 +3,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <exception>
 #include <vector>
@@ -24,6 +25,14 @@ void for_each_in_parallel(std::size_t count, const Work& work) {
     });
     for (const std::exception_ptr& error : errors)
         if (error) std::rethrow_exception(error);
+}
+
+/// Calls work(first, last) for runs of 0 ... count that are worth a task each.
+template <class Work>
+void for_each_block(std::size_t count, const Work& work) {
+    constexpr std::size_t block = std::size_t(1) << 15;
+    for_each_in_parallel((count + block - 1) / block,
+                         [&](std::size_t i) { work(i * block, std::min(count, (i + 1) * block)); });
 }
 
 }  // namespace penumbra
