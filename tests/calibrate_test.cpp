@@ -35,6 +35,8 @@ TEST_CASE("Calibrated limits leave the worst pair its error and half of it more"
     // Rounded away from the pairs, never towards them.
     CHECK(calibrated_limits({with({most("flip", 0.00123)})}, 1).limits.at("flip") ==
           Approx(0.0013));
+    // No less than no pixel can be the same.
+    CHECK(calibrated_limits({with({least("parity", 0.1)})}).limits.at("parity") == 0);
 }
 
 TEST_CASE("Calibrated limits know that decibels are a logarithm") {

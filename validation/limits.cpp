@@ -88,7 +88,9 @@ Limits calibrated_limits(const std::vector<Comparison>& good, double margin) {
             if (found == pair.metrics.end() || !std::isfinite(found->value)) continue;
             if (worst == nullptr || worse(*found, *worst)) worst = &*found;
         }
-        if (worst != nullptr) result.limits[name] = limit_for(*worst, margin);
+        if (worst == nullptr) continue;
+        const double limit = limit_for(*worst, margin);
+        result.limits[name] = worst->name == "parity" ? std::max(limit, 0.0) : limit;
     }
     return result;
 }
