@@ -320,6 +320,10 @@ struct Writer {
 
 }  // namespace
 
+Losses pov_losses(const NormalisedScene& scene, const RenderOptions& render) {
+    return pov::make_plan(scene.scene, render, "scene").losses;
+}
+
 std::string pov_text(const NormalisedScene& scene, const RenderOptions& render,
                      const std::string& stem, const PovOptions& options) {
     const Plan plan = pov::make_plan(scene.scene, render, stem);

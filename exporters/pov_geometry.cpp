@@ -1,3 +1,4 @@
+#include "memory.h"
 #include "pov_material.h"
 #include "pov_plan.h"
 #include "sdl.h"
@@ -151,6 +152,7 @@ std::size_t expected_size(const Plan& plan) {
 }  // namespace
 
 std::string geometry_text(const Plan& plan) {
+    const MemoryClaim claim(2 * expected_size(plan), plan.stem + "_geometry.inc");
     std::string out;
     out.reserve(expected_size(plan));
     for (std::size_t i = 0; i < plan.meshes.size(); ++i) {

@@ -1,5 +1,6 @@
 #include "gloss.h"
 
+#include "memory.h"
 #include "phong.h"
 
 #include <tbb/parallel_for.h>
@@ -190,8 +191,10 @@ bool keeps_base(const PolishMaps& maps) {
 // colour that they get but by that of the median texel: a plastic with some screws keeps the usual
 // highlight, and the screws' may be brighter than white.
 PolishImages bake_polish(const PolishMaps& maps) {
-    if (keeps_base(maps)) return bake_roughness(maps);
+    constexpr std::size_t channels = 7;  // of the three images
     const Size size = common_size(maps);
+    const MemoryClaim claim(size.texels() * channels, maps.place);
+    if (keeps_base(maps)) return bake_roughness(maps);
     const Resized base(maps.base, maps, size), metallic(maps.metallic, maps, size),
         roughness(maps.roughness, maps, size), specular(maps.specular, maps, size);
     const Levels levels(maps.roughness);

@@ -16,6 +16,7 @@ struct PolishMaps {
     TexelSource specular = {};   ///< reflectance of what is not metal, at normal incidence
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     bool bilinear = true;
+    std::string place = {};  ///< for messages
 };
 
 /// Phong terms of such a surface. What is the same all over it has an empty image.

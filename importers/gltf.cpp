@@ -1,6 +1,9 @@
 // glTF nodes -> what a scene of the file shows.
 #include "gltf.h"
+
 #include "gltf_texture.h"
+#include "invertible.h"
+#include "memory.h"
 
 #include <fmt/format.h>
 
@@ -100,11 +103,12 @@ void Walker::node(int index, bool visible) {
     if (visible) read_light(reader, index, world);
 }
 
-// A matrix that has no inverse up to rounding: it flattens what it is applied to.
+// A matrix that has no inverse up to rounding: it flattens what it is applied to, or leaves next to
+// nothing of it.
 bool is_flat(const Matrix& m) {
     double volume = 1;
     for (int row = 0; row < 3; ++row) volume *= Vec3(m[row][0], m[row][1], m[row][2]).length();
-    return std::abs(m.determinant()) <= 1e-12 * volume;
+    return std::abs(m.determinant()) <= std::max(1e-12 * volume, least_determinant);
 }
 
 // An Instance must have an inverse, so that a flattened mesh is placed by its vertices. None when
@@ -132,6 +136,9 @@ void Walker::show_mesh(int index) {
     if (instances && posed)
         reader.lose(fmt::format("/nodes/{}/extensions/EXT_mesh_gpu_instancing", index),
                     "its mesh has a skin and is shown once");
+    const MemoryClaim claim(
+        times(times(instances ? instances->size() : 1, shown.size()), 2 * sizeof(Instance)),
+        reader.document.place(fmt::format("/nodes/{}", index)));
     for (const ShownMesh& each : shown) {
         if (each.posed)
             place(each, index, Matrix());
@@ -150,6 +157,9 @@ void Walker::place(const ShownMesh& shown, int index, const Matrix& world) {
     if (!finite(world))
         throw Error(Failure::input, reader.document.place(pointer),
                     "the position of one of its instances is too large a number");
+    MemoryClaim claim;
+    if (is_flat(world))
+        claim = MemoryClaim(memory_of(scene.meshes[shown.mesh]), reader.document.place(pointer));
     if (!is_flat(world))
         scene.instances.push_back({.name = name, .mesh = shown.mesh, .transform = world});
     else if (auto baked = flattened(scene.meshes[shown.mesh], world)) {
@@ -176,7 +186,7 @@ void drop_unused_materials(Scene& scene) {
 
 Imported read(const std::filesystem::path& file, const ModelOptions& options) {
     Imported imported;
-    const Document document = open_document(file, imported.losses);
+    const Document document = open_document(file, options, imported.losses);
     const tinygltf::Model& model = document.model;
     Reader reader{document, imported.scene, imported.losses, options};
     reader.pose = read_pose(reader);
@@ -203,7 +213,8 @@ Imported read_gltf(const std::filesystem::path& file, const ModelOptions& option
     try {
         return gltf::read(file, options);
     } catch (const std::bad_alloc&) {
-        throw Error(Failure::input, file.string(), "is too large for the memory of this machine");
+        throw MemoryError(Failure::input, file.string(),
+                          "is too large for the memory of this machine");
     }
 }
 

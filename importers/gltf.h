@@ -8,6 +8,7 @@
 
 #include "gltf_pose.h"
 #include "image_store.h"
+#include "model_folders.h"
 
 #include "penumbra/importers.h"
 
@@ -39,7 +40,7 @@ struct ImageSource {
 /// A glTF file whose references can be trusted.
 struct Document {
     std::string file = {};                             ///< as the user wrote it
-    std::filesystem::path folder = {};                 ///< where its other files are
+    ModelFolders folders = {};                         ///< where its other files are
     tinygltf::Model model = {};                        ///< without buffers and images
     std::vector<std::vector<std::byte>> storage = {};  ///< owns what `buffers` refer to
     std::vector<Bytes> buffers = {};                   ///< empty: the file gives no content
@@ -52,7 +53,8 @@ struct Document {
 // ---- gltf_document.cpp ------------------------------------------------------------------------
 
 /// Reads and checks `file`; buffers are loaded, images are not. Throws Error (input).
-Document open_document(const std::filesystem::path& file, Losses& losses);
+Document open_document(const std::filesystem::path& file, const ModelOptions& options,
+                       Losses& losses);
 
 /// The bytes of an image. Throws Error (input).
 std::vector<std::byte> image_bytes(const Document& document, const ImageSource& image,
@@ -69,7 +71,10 @@ struct Container {
 /// Splits a .glb, or takes all of `content` as JSON. Throws Error (input).
 Container split_container(Bytes content, const std::string& file, Losses& losses);
 
-/// Parses JSON; what is nested deeper than any glTF is left out. Throws Error (input).
+// ---- gltf_json.cpp ----------------------------------------------------------------------------
+
+/// Parses JSON; extras and what is nested deeper than any glTF are left out, long names are cut.
+/// Throws Error (input).
 nlohmann::json parse_json(std::string_view text, const std::string& file, Losses& losses);
 
 // ---- gltf_meshopt.cpp, gltf_meshopt_vertices.cpp, gltf_draco.cpp ------------------------------
@@ -92,8 +97,8 @@ void decode_draco(Document& document, nlohmann::json& root, Losses& losses);
 
 // ---- gltf_uri.cpp -----------------------------------------------------------------------------
 
-/// The bytes that `uri` stands for: a data: URI, or a file below `folder`. Throws Error (input).
-std::vector<std::byte> fetch(const std::string& uri, const std::filesystem::path& folder,
+/// The bytes that `uri` stands for: a data: URI, or a file in `folders`. Throws Error (input).
+std::vector<std::byte> fetch(const std::string& uri, const ModelFolders& folders,
                              const std::string& place);
 
 // ---- gltf_asset.cpp, gltf_check.cpp, gltf_layout.cpp -------------------------------------------

@@ -1,5 +1,6 @@
 // glTF animations -> the stances of nodes at one instant (glTF 2.0, section 3.11 and appendix C).
 #include "gltf.h"
+#include "memory.h"
 
 #include <fmt/format.h>
 
@@ -36,7 +37,8 @@ enum : std::size_t { tangent_in = 0, at_key = 1, tangent_out = 2 };
 
 Numbers Track::value(std::size_t key, std::size_t part) const {
     const std::size_t index = cubic() ? 3 * key + part : key;
-    std::vector<float> floats(elements * std::size_t(components));
+    std::vector<float> floats;
+    resize_claimed(floats, elements * std::size_t(components), document.place(pointer));
     read_floats(document, sampler.output, {.first = index * elements, .count = elements},
                 components, floats.data());
     return {floats.begin(), floats.end()};
@@ -50,7 +52,7 @@ Track read_track(const Document& document, const tinygltf::AnimationSampler& sam
     const tinygltf::Accessor& input = track.accessor(sampler.input);
     if (input.type != TINYGLTF_TYPE_SCALAR || input.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
         track.fail("/input", fmt::format("accessor {} must hold single floats", sampler.input));
-    track.times.resize(input.count);
+    resize_claimed(track.times, input.count, document.place(pointer));
     read_floats(document, sampler.input, {.first = 0, .count = input.count}, 1, track.times.data());
 
     const tinygltf::Accessor& output = track.accessor(sampler.output);

@@ -1,5 +1,6 @@
 // JSON -> is this a glTF 2 file, and one that the importer can show?
 #include "gltf.h"
+#include "suggest.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -63,9 +64,7 @@ std::pair<int, int> version(const json& value) {
 
 std::string printable(std::string_view text) {
     constexpr std::size_t longest = 80;
-    std::string line(text.substr(0, longest));
-    for (char& c : line)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    const std::string line = penumbra::printable(text.substr(0, longest));
     return text.size() > longest ? line + "..." : line;
 }
 

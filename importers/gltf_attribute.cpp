@@ -1,5 +1,6 @@
 // Attributes of glTF primitives, with their morph targets -> the vertices of a Mesh.
 #include "gltf_mesh.h"
+#include "memory.h"
 #include "parallel.h"
 
 #include <fmt/format.h>
@@ -7,7 +8,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <map>
 
 namespace penumbra::gltf {
 namespace {
@@ -131,26 +131,31 @@ void repair_normals(const Part& part, Mesh& mesh) {
         }
     });
     if (complete) return;
-    std::map<Index, Vec3> missing;
-    for (std::size_t i = 0; i < mesh.normals.size(); ++i)
-        if (!(Vec3(mesh.normals[i]).length() > 1e-6)) missing.emplace(Index(i), Vec3(0));
-    part.reader.lose_in_primitive(
-        part.pointer + "/attributes/NORMAL",
-        fmt::format("{} of {} normals have no length; those of the facets are used", missing.size(),
-                    mesh.normals.size()));
+    std::vector<Vec3> sums;
+    resize_claimed(sums, mesh.normals.size(), part.place());
+    std::fill(sums.begin(), sums.end(), Vec3(0));
+    const auto is_missing = [&](std::size_t i) { return !(Vec3(mesh.normals[i]).length() > 1e-6); };
     for (const auto& triangle : mesh.triangles) {
         const auto corner = [&](std::size_t i) { return Vec3(mesh.positions[triangle[i]]); };
         for (const Index vertex : triangle)
-            if (const auto found = missing.find(vertex); found != missing.end())
-                found->second += (corner(1) - corner(0)).cross(corner(2) - corner(0));
+            if (is_missing(vertex))
+                sums[vertex] += (corner(1) - corner(0)).cross(corner(2) - corner(0));
     }
-    for (const auto& [vertex, sum] : missing)
-        mesh.normals[vertex] = sum.length() > 0 ? Vec3f(sum.normalized()) : Vec3f(0, 1, 0);
+    std::size_t missing = 0;
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        if (!is_missing(i)) continue;
+        ++missing;
+        mesh.normals[i] = sums[i].length() > 0 ? Vec3f(sums[i].normalized()) : Vec3f(0, 1, 0);
+    }
+    part.reader.lose_in_primitive(
+        part.pointer + "/attributes/NORMAL",
+        fmt::format("{} of {} normals have no length; those of the facets are used", missing,
+                    mesh.normals.size()));
 }
 
 void read_normals(const Part& part, Range range, Mesh& mesh) {
     if (attribute(part, "NORMAL", {TINYGLTF_TYPE_VEC3}) < 0) return;
-    mesh.normals.resize(range.count);
+    resize_claimed(mesh.normals, range.count, part.place());
     read_vertices(part, "NORMAL", range, 3, &mesh.normals.front().x);
     repair_normals(part, mesh);
 }
@@ -172,7 +177,7 @@ void read_tangents(const Part& part, Range range, Mesh& mesh) {
         attribute(part, "TANGENT", {TINYGLTF_TYPE_VEC4}) < 0)
         return;
     static_assert(sizeof(Tangent) == 4 * sizeof(float));  // x, y, z and the handedness
-    mesh.tangents.resize(range.count);
+    resize_claimed(mesh.tangents, range.count, part.place());
     float* const numbers = &mesh.tangents.front().direction.x;
     read_floats(part.reader.document, part.primitive.attributes.at("TANGENT"), range, 4, numbers);
     morph(part, "TANGENT", range, {.first = numbers, .width = 3, .stride = 4});
@@ -203,7 +208,7 @@ void read_texcoords(const Part& part, Range range, Mesh& mesh) {
         mesh.material = untextured(part.reader, material);
         return;
     }
-    mesh.texcoords.resize(range.count);
+    resize_claimed(mesh.texcoords, range.count, part.place());
     read_vertices(part, name, range, 2, &mesh.texcoords.front().x);
     for (Vec2f& t : mesh.texcoords) t.y = 1 - t.y;  // glTF's v runs down
 }
@@ -229,7 +234,9 @@ void read_alphas(const Part& part, Range range, int accessor, Mesh& mesh) {
     if (part.accessor(accessor).type != TINYGLTF_TYPE_VEC4 || material < 0) return;
     const std::string& mode = part.model().materials[std::size_t(material)].alphaMode;
     if (mode == "OPAQUE") return;
-    std::vector<float> all(range.count * 4), alphas(range.count);
+    std::vector<float> all, alphas;
+    resize_claimed(all, range.count * 4, part.place());
+    resize_claimed(alphas, range.count, part.place());
     read_vertices(part, "COLOR_0", range, 4, all.data());
     for (std::size_t i = 0; i < range.count; ++i)
         alphas[i] = std::clamp(all[4 * i + 3], 0.0F, 1.0F);
@@ -259,7 +266,7 @@ void read_colors(const Part& part, Range range, Mesh& mesh) {
             part.lose(
                 fmt::format("its {} is ignored; only COLOR_0 has a meaning", printable(name)));
     if (accessor < 0) return;
-    mesh.colors.resize(range.count);
+    resize_claimed(mesh.colors, range.count, part.place());
     read_vertices(part, "COLOR_0", range, 3, &mesh.colors.front().x);
     // glTF 2.0, section 3.7.2.2: morphed colours are clamped.
     if (!part.form.weights.empty() && !part.primitive.targets.empty())
@@ -284,7 +291,7 @@ void read_vertices(const Part& part, const std::string& name, Range range, int w
 
 void read_attributes(const Part& part, Range range, Mesh& mesh) {
     check_weights(part);
-    mesh.positions.resize(range.count);
+    resize_claimed(mesh.positions, range.count, part.place());
     read_vertices(part, "POSITION", range, 3, &mesh.positions.front().x);
     read_normals(part, range, mesh);
     read_tangents(part, range, mesh);

@@ -1,19 +1,13 @@
-// Bytes -> JSON text and BIN chunk -> JSON.
+// Bytes -> JSON text and BIN chunk.
 #include "gltf.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include <algorithm>
 
 namespace penumbra::gltf {
 namespace {
 
 constexpr std::uint32_t chunk_json = 0x4E4F534A, chunk_bin = 0x004E4942;
 constexpr std::size_t header_size = 12, chunk_header_size = 8;
-
-// What glTF defines ends long before. Deeper are only extras, over which tinygltf recurses.
-constexpr int max_nesting = 64;
 
 // glTF 2.0, section 4: all numbers of the container are little-endian.
 std::uint32_t word(Bytes bytes, std::size_t at) {
@@ -34,13 +28,6 @@ void need(Bytes content, std::size_t size, const std::string& before, const std:
     if (content.size() < size)
         fail(file, fmt::format("the file ends before {} (needs {} bytes, has {})", before, size,
                                content.size()));
-}
-
-std::string line_and_column(std::string_view text, std::size_t at) {
-    const std::string_view before = text.substr(0, std::min(at, text.size()));
-    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-    const std::size_t start = before.rfind('\n') + 1;  // npos + 1 is 0
-    return fmt::format("{}:{}", line, before.size() - start + 1);
 }
 
 Container split_glb(Bytes content, const std::string& file, Losses& losses) {
@@ -87,29 +74,6 @@ Container split_container(Bytes content, const std::string& file, Losses& losses
     if (content.empty()) fail(file, "the file is empty");
     if (as_text(content).substr(0, 4) == "glTF") return split_glb(content, file, losses);
     return {.json = as_text(content)};
-}
-
-nlohmann::json parse_json(std::string_view text, const std::string& file, Losses& losses) {
-    // Some writers pad the JSON chunk with zeros instead of blanks.
-    while (!text.empty() && text.back() == '\0') text.remove_suffix(1);
-    bool cut = false;
-    const auto keep = [&](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
-        cut = cut || depth > max_nesting;
-        return depth <= max_nesting;
-    };
-    try {
-        nlohmann::json root = nlohmann::json::parse(text, keep);
-        if (cut)
-            losses.push_back(
-                {file,
-                 fmt::format("what is nested more than {} levels deep is ignored", max_nesting)});
-        return root;
-    } catch (const nlohmann::json::parse_error& error) {
-        fail(file + ':' + line_and_column(text, error.byte > 0 ? error.byte - 1 : 0),
-             "the JSON cannot be parsed here");
-    } catch (const nlohmann::json::exception&) {
-        fail(file, "the JSON has a number that is out of range");
-    }
 }
 
 }  // namespace penumbra::gltf

@@ -2,6 +2,7 @@
 #include "file.h"
 #include "gltf.h"
 #include "gltf_schema.h"
+#include "memory.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -32,7 +33,7 @@ void load_buffers(Document& document, json& root, Bytes bin) {
         if (buffer.contains("uri")) {
             // A data: URI may be most of the file; it is not kept twice.
             const std::string uri = std::exchange(buffer["uri"].get_ref<std::string&>(), {});
-            document.storage.push_back(fetch(uri, document.folder, place));
+            document.storage.push_back(fetch(uri, document.folders, place));
             bytes = document.storage.back();
         }
         if (bytes.size() < length)
@@ -45,10 +46,13 @@ void load_buffers(Document& document, json& root, Bytes bin) {
 
 void list_images(Document& document, json& root) {
     if (!root.contains("images")) return;
-    for (json& image : root["images"])
+    for (json& image : root["images"]) {
+        std::string uri;
+        if (image.contains("uri")) uri = std::exchange(image["uri"].get_ref<std::string&>(), {});
         document.images.push_back({.name = image.value("name", ""),
-                                   .uri = image.value("uri", ""),
+                                   .uri = std::move(uri),
                                    .view = image.value("bufferView", -1)});
+    }
 }
 
 void refuse_write(std::string* error) {
@@ -82,13 +86,26 @@ void add_size_callback(Callbacks& files) {
         };
 }
 
+// What the text of `value` and the structures that tinygltf makes of it take of memory. Its nesting
+// is bounded.
+std::size_t structure_size(const json& value) {
+    constexpr std::size_t object = 1280, number = 128;  // of a Node or Accessor; of a Value
+    std::size_t bytes = number;
+    if (value.is_string()) bytes += 4 * value.get_ref<const std::string&>().size();
+    if (value.is_object()) bytes += object;
+    if (value.is_structured())
+        for (const json& part : value) bytes += structure_size(part);
+    return bytes;
+}
+
 constexpr int no_node = int(largest_int);
 
 // JSON -> structures. Some things that tinygltf 2.7 refuses although they are valid or harmless are
 // kept from it: buffers without content, accessors without a buffer view that serve as indices,
 // strides that are no multiple of four, spot lights with all defaults, animations of no node.
 tinygltf::Model parse_model(json root, const std::string& file) {
-    for (const char* key : {"buffers", "images", "extras"}) root.erase(key);
+    for (const char* key : {"buffers", "images"}) root.erase(key);
+    const MemoryClaim claim(structure_size(root), file);
     json& views = root["bufferViews"];
     if (!views.is_array()) views = json::array();
     const std::size_t view_count = views.size();
@@ -134,10 +151,11 @@ tinygltf::Model parse_model(json root, const std::string& file) {
 
 }  // namespace
 
-Document open_document(const std::filesystem::path& file, Losses& losses) {
+Document open_document(const std::filesystem::path& file, const ModelOptions& options,
+                       Losses& losses) {
     Document document;
     document.file = file.string();
-    document.folder = file.parent_path();
+    document.folders = {.own = file.parent_path(), .allowed = options.allowed_paths};
     document.storage.push_back(read_bytes(file));
     const Container parts = split_container(document.storage.front(), document.file, losses);
 
@@ -157,11 +175,12 @@ Document open_document(const std::filesystem::path& file, Losses& losses) {
 
 std::vector<std::byte> image_bytes(const Document& document, const ImageSource& image,
                                    const std::string& place) {
-    if (image.view < 0) return fetch(image.uri, document.folder, place);
+    if (image.view < 0) return fetch(image.uri, document.folders, place);
     const tinygltf::BufferView& view = document.model.bufferViews[std::size_t(image.view)];
     const Bytes buffer = document.buffers[std::size_t(view.buffer)];
     if (buffer.empty()) throw Error(Failure::input, place, "its buffer has no content");
     const Bytes slice = buffer.subspan(view.byteOffset, view.byteLength);
+    const MemoryClaim claim(slice.size(), place);
     return {slice.begin(), slice.end()};
 }
 

@@ -1,5 +1,6 @@
 // EXT_mesh_gpu_instancing -> transforms.
 #include "gltf.h"
+#include "memory.h"
 
 #include <fmt/format.h>
 
@@ -63,6 +64,8 @@ std::optional<std::vector<Matrix>> read_instances(const Reader& reader, int node
                 Failure::input, each.place,
                 fmt::format("has {} instances, but another attribute has {}", each.count, count));
 
+    constexpr std::size_t numbers = 10 * sizeof(float);
+    const MemoryClaim claim(times(count, numbers + sizeof(Matrix)), reader.document.place(pointer));
     const auto moves = moved.read(3), turns = turned.read(4), scales = scaled.read(3);
     std::vector<Matrix> matrices;
     matrices.reserve(count);

@@ -74,6 +74,7 @@ struct Layout {
     }
 
     void accessors() const;
+    void zeros() const;
     void trees() const;
 };
 
@@ -106,6 +107,37 @@ void Layout::accessors() const {
                  fmt::format("is {}, which is no unsigned integer", type));
         fits(at + "/sparse/indices", sparse["indices"], changed, component_size(type));
         fits(at + "/sparse/values", sparse["values"], changed, element);
+    }
+}
+
+// They may be used as often as the author likes.
+void Layout::zeros() const {
+    constexpr std::uint64_t most = 2 * max_implicit_count;
+    std::uint64_t used = 0;
+    const auto add = [&](const json& index) {
+        const json& accessor = root["accessors"][index.get<std::size_t>()];
+        if (!accessor.contains("bufferView")) used += size_at(accessor, "count");
+    };
+    const auto add_all = [&](const json& attributes) {
+        for (const json& index : attributes) add(index);
+    };
+    for (std::size_t m = 0; root.contains("meshes") && m < root["meshes"].size(); ++m) {
+        const json& primitives = root["meshes"][m]["primitives"];
+        for (std::size_t p = 0; p < primitives.size(); ++p) {
+            const json& primitive = primitives[p];
+            // What is decompressed has no buffer view either.
+            const bool compressed = primitive.contains("extensions") &&
+                                    primitive["extensions"].contains("KHR_draco_mesh_compression");
+            if (!compressed) add_all(primitive["attributes"]);
+            if (!compressed && primitive.contains("indices")) add(primitive["indices"]);
+            if (primitive.contains("targets"))
+                for (const json& target : primitive["targets"]) add_all(target);
+            if (used > most)
+                fail(fmt::format("/meshes/{}/primitives/{}", m, p),
+                     fmt::format("uses elements without a buffer view; with those of the "
+                                 "primitives before they are {}, more than the {} that are read",
+                                 used, most));
+        }
     }
 }
 
@@ -147,6 +179,7 @@ void check_layout(const json& root, const std::string& file) {
     const Layout layout{root, file};
     layout.views();
     layout.accessors();
+    layout.zeros();
     layout.trees();
 }
 

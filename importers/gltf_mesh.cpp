@@ -1,6 +1,8 @@
 // glTF meshes -> Meshes, one a primitive.
 #include "gltf_mesh.h"
 
+#include "memory.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,7 +35,8 @@ std::size_t corner_count(const Part& part) {
 
 Triangles read_list(const Part& part, std::size_t count) {
     // One triple more takes up what makes no whole triangle.
-    Triangles triangles((count + 2) / 3);
+    Triangles triangles;
+    resize_claimed(triangles, (count + 2) / 3, part.place());
     read_corners(part, count, triangles.data()->data());
     if (count % 3 != 0) {
         triangles.pop_back();
@@ -44,8 +47,10 @@ Triangles read_list(const Part& part, std::size_t count) {
 
 // glTF 2.0, section 3.7.2.1: strips and fans.
 Triangles read_strip_or_fan(const Part& part, std::size_t count, bool fan) {
-    std::vector<Index> corners(count);
+    std::vector<Index> corners;
+    resize_claimed(corners, count, part.place());
     read_corners(part, count, corners.data());
+    const MemoryClaim claim(times(count, sizeof(Triangles::value_type)), part.place());
     Triangles triangles;
     triangles.reserve(count);
     for (std::size_t i = 0; i + 2 < count; ++i) {

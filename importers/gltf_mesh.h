@@ -24,6 +24,7 @@ struct Part {
     [[noreturn]] void fail(const std::string& below, const std::string& problem) const {
         throw Error(Failure::input, reader.document.place(pointer + below), problem);
     }
+    std::string place() const { return reader.document.place(pointer); }
     void lose(const std::string& what) const { reader.lose_in_primitive(pointer, what); }
 };
 

@@ -1,5 +1,6 @@
 // EXT_meshopt_compression and KHR_meshopt_compression -> plain buffer views.
 #include "gltf.h"
+#include "memory.h"
 
 #include <fmt/format.h>
 #include <meshoptimizer.h>
@@ -89,6 +90,7 @@ void decode_colors(std::vector<std::byte>& bytes) {
 
 std::vector<std::byte> Compressed::decode() const {
     const auto* const from = reinterpret_cast<const unsigned char*>(data.data());
+    const MemoryClaim claim(2 * count * stride, place);
     std::vector<std::byte> bytes(count * stride);
     int failure = 0;
     // Version 1 is newer than the library.

@@ -180,6 +180,7 @@ BakedPolish Plan::baked(const Map& laid, const Map& level) {
     maps.wrap_u = sampling.wrap_u;
     maps.wrap_v = sampling.wrap_v;
     maps.bilinear = sampling.bilinear;
+    maps.place = read.reader.document.place(fmt::format("/textures/{}", laid.texture));
     PolishImages images = bake_polish(maps);
     const auto keep = [&](const Map& map, const char* use, Raster& raster) {
         if (raster.texels() == 0) return no_index;

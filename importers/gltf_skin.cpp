@@ -1,5 +1,6 @@
 // glTF skins: vertices -> where joints take them (glTF 2.0, section 3.7.3).
 #include "gltf_mesh.h"
+#include "memory.h"
 
 #include <fmt/format.h>
 
@@ -111,6 +112,7 @@ std::vector<Matrix> joint_matrices(const Reader& reader, int index) {
     const tinygltf::Skin& skin = reader.document.model.skins[std::size_t(index)];
     const std::string place = reader.document.place(fmt::format("/skins/{}", index));
     if (skin.joints.empty()) throw Error(Failure::input, place + "/joints", "is empty");
+    const MemoryClaim claim(skin.joints.size() * 3 * sizeof(Matrix), place);
     // glTF 2.0, section 5.28.1: without inverse bind matrices each is the identity.
     std::vector<float> inverse;
     if (const int accessor = skin.inverseBindMatrices; accessor >= 0) {

@@ -1,6 +1,7 @@
 // Images on a second set of texture coordinates. POV-Ray's meshes have one set; where the second is
 // an affine function of the first, facet by facet, the image is laid by the first.
 #include "gltf_mesh.h"
+#include "memory.h"
 #include "vertices.h"
 
 #include <fmt/format.h>
@@ -70,7 +71,8 @@ std::optional<Sets> read_sets(const Part& part, Range range, const std::vector<O
     for (const OtherSet& other : wanted) {
         const std::string name = fmt::format("TEXCOORD_{}", other.texcoord);
         if (attribute(part, name, {TINYGLTF_TYPE_VEC2}) < 0) return std::nullopt;
-        auto& texcoords = sets.emplace_back(range.count);
+        auto& texcoords = sets.emplace_back();
+        resize_claimed(texcoords, range.count, part.place());
         read_vertices(part, name, range, 2, &texcoords.front().x);
         for (Vec2f& t : texcoords) t.y = 1 - t.y;  // glTF's v runs down
     }
@@ -164,6 +166,7 @@ std::vector<Mesh> lay_by_one_set(const Part& part, Range range, Mesh mesh) {
         return result;
     }
     for (Group& group : *groups) {
+        const MemoryClaim claim(2 * memory_of(mesh), part.place());
         const Index material = relaid(reader, mesh.material, others->second, group.lookups);
         result.push_back(part_of(mesh, std::move(group.facets)));
         result.back().material = material;

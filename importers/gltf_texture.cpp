@@ -1,5 +1,7 @@
 #include "gltf_texture.h"
 
+#include "memory.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -77,6 +79,9 @@ int decode(Reader& reader, int texture_index) {
             if (reader.looks.store.find(reader.scene, name) == nullptr)
                 reader.looks.store.add(name, decode(document, index));
             return index;
+        } catch (const MemoryError& error) {
+            throw MemoryError(Failure::input, document.place(fmt::format("/images/{}", index)),
+                              error.what());
         } catch (const Error& error) {
             reason = error.what();
         }
@@ -208,6 +213,11 @@ Index derived_texture(Reader& reader, int index, const std::string& use, bool sr
     Texture texture = frame_of(reader, index);
     texture.name += '_' + use.substr(0, use.find(' '));
     texture.srgb = srgb;
+    const auto image = reader.looks.images.find(index);
+    MemoryClaim claim;
+    if (image != reader.looks.images.end() && image->second >= 0)
+        claim = MemoryClaim(raster_of(reader, index)->data.size(),
+                            reader.document.place(fmt::format("/textures/{}", index)));
     texture.raster = make();
     reader.scene.textures.push_back(std::move(texture));
     return reader.looks.textures[key] = Index(reader.scene.textures.size() - 1);

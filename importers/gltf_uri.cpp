@@ -1,6 +1,7 @@
 // URI -> bytes.
-#include "file.h"
 #include "gltf.h"
+#include "memory.h"
+#include "suggest.h"
 
 #include <fmt/format.h>
 
@@ -79,6 +80,7 @@ std::vector<std::byte> data_uri(std::string_view uri, const std::string& place) 
     if (comma == std::string_view::npos)
         throw Error(Failure::input, place, "the data: URI has no comma");
     const std::string_view head = uri.substr(0, comma), data = uri.substr(comma + 1);
+    const MemoryClaim claim(2 * data.size(), place);
     constexpr std::string_view mark = ";base64";
     if (head.size() < mark.size() ||
         !equal_ignoring_case(head.substr(head.size() - mark.size()), mark)) {
@@ -102,9 +104,8 @@ bool has_scheme(std::string_view uri) {
     });
 }
 
-// A model may name only files of its own folder: what it names is read into the picture or into a
-// report, which may be published.
-fs::path local_file(const std::string& uri, const fs::path& folder, const std::string& place) {
+// The file that a relative reference means (RFC 3986, section 4.2).
+fs::path local_file(const std::string& uri, const ModelFolders& folders, const std::string& place) {
     const auto refuse = [&](const std::string& why) {
         throw Error(Failure::input, place, fmt::format("the uri '{}' {}", printable(uri), why));
     };
@@ -115,31 +116,29 @@ fs::path local_file(const std::string& uri, const fs::path& folder, const std::s
     if (name.empty()) refuse("is empty");
     if (std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20; }))
         refuse("has a control character");
+    if (name.starts_with("//")) refuse("is on another machine; only local files are read");
 
-    const fs::path relative = fs::path(name).lexically_normal();
-    if (relative.is_absolute() || *relative.begin() == "..")
-        refuse("leads out of the model's folder");
-    std::error_code error;
-    const fs::path base = fs::canonical(folder.empty() ? "." : folder, error);
-    const fs::path target = fs::weakly_canonical(base / relative, error);
-    if (!error) {
-        const fs::path inside = target.lexically_relative(base);
-        if (inside.empty() || *inside.begin() == "..") refuse("leads out of the model's folder");
-    }
-    return folder / relative;
+    const fs::path path = fs::path(name).lexically_normal();
+    const bool inside = path.is_relative() && *path.begin() != "..";
+    fs::path file = folders.own / path;
+    if ((!inside && folders.allowed.empty()) || !may_read(folders, file))
+        refuse(fmt::format("leads out of the model's folder {}", how_to_allow));
+    return file;
 }
 
 }  // namespace
 
-std::vector<std::byte> fetch(const std::string& uri, const fs::path& folder,
+std::vector<std::byte> fetch(const std::string& uri, const ModelFolders& folders,
                              const std::string& place) {
     if (equal_ignoring_case(std::string_view(uri).substr(0, 5), "data:"))
         return data_uri(uri, place);
-    const fs::path file = local_file(uri, folder, place);
+    const fs::path file = local_file(uri, folders, place);
     try {
-        return read_bytes(file);
+        return read_allowed(folders, file);
+    } catch (const MemoryError&) {
+        throw;
     } catch (const Error& error) {
-        throw Error(Failure::input, place, error.what());
+        throw Error(Failure::input, place, penumbra::printable(error.what()));
     }
 }
 

@@ -1,5 +1,7 @@
 #include "image_store.h"
 
+#include "memory.h"
+
 #include <tbb/global_control.h>
 
 #include <algorithm>
@@ -60,6 +62,7 @@ Index ImageStore::place(Scene& scene, const std::string& name, Texture frame) {
     const Raster* raster = find(scene, name);
     const auto made = Index(scene.textures.size());
     if (placed.count(name) != 0) {
+        const MemoryClaim claim(raster->data.size(), frame.name);
         frame.raster = *raster;
     } else {
         frame.raster = std::move(recent.front().second);

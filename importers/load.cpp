@@ -34,7 +34,7 @@ std::string extension_of(const fs::path& file) {
 }
 
 Imported read_model(const fs::path& file, const ModelOptions& options) {
-    return extension_of(file) == ".obj" ? read_obj(file) : read_gltf(file, options);
+    return extension_of(file) == ".obj" ? read_obj(file, options) : read_gltf(file, options);
 }
 
 /// What is to be read, in the order in which it is laid over the scene.
@@ -246,6 +246,10 @@ Imported load_scene(const std::vector<fs::path>& inputs, const LoadOptions& opti
     if (options.penumbra && !(std::isfinite(*options.penumbra) && *options.penumbra >= 0))
         throw Error(Failure::usage, "--penumbra",
                     fmt::format("must be a finite number of 0 or more, not {}", *options.penumbra));
+    for (const fs::path& folder : options.model.allowed_paths)
+        if (std::error_code ignored; !fs::is_directory(folder, ignored))
+            throw Error(Failure::usage, "--allow-path",
+                        fmt::format("'{}' is not a folder", printable(folder.string())));
     const Request request = read_request(inputs, options);
     Imported result;
     lay_layers(request, options.model, result);

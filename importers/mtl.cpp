@@ -222,10 +222,10 @@ void expect_images(const Model& model,
 }  // namespace
 
 void build_materials(const Model& model, const std::vector<MtlEntry>& entries,
-                     const std::filesystem::path& file, Imported& result) {
+                     const ModelFolders& folders, Imported& result) {
     const auto known = by_name(entries, result.losses);
     MaterialTally tally;
-    TextureReader textures(file, result.scene, tally);
+    TextureReader textures(folders, result.scene, tally);
     expect_images(model, known, textures);
     std::size_t missing = 0;
     Named first_missing;

@@ -1,4 +1,5 @@
 // Texture statements of MTL -> the images of a Material.
+#include "memory.h"
 #include "mtl_material.h"
 
 #include <fmt/format.h>
@@ -186,6 +187,7 @@ bool MaterialMaker::polish_images(Polished& polished) {
         maps.base.raster = &textures.raster(*base);
         maps.base.srgb = true;
         if (base->operands.is_ranged()) {
+            const MemoryClaim claim(maps.base.raster->data.size(), base->file.string());
             ranged = remapped(*maps.base.raster, base->operands.base, base->operands.gain);
             maps.base.raster = &ranged;
         }
@@ -209,6 +211,7 @@ bool MaterialMaker::polish_images(Polished& polished) {
 
 void MaterialMaker::bake(PolishMaps& maps, const MapImage& frame, const MapImage& of_level) {
     maps.wrap_u = maps.wrap_v = frame.operands.clamp ? Wrap::clamp : Wrap::repeat;
+    maps.place = frame.file.string();
     const bool plain = keeps_base(maps);
     PolishImages images = bake_polish(maps);
     std::string key;

@@ -1,4 +1,4 @@
-#include "file.h"
+#include "memory.h"
 #include "obj.h"
 #include "texels.h"
 
@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <utility>
 
 namespace penumbra::obj {
 
@@ -124,10 +125,6 @@ void take_options(std::string_view& rest, MapOperands& result) {
     }
 }
 
-Raster decode(const fs::path& file) {
-    return decode_image(read_bytes(file, max_texture_size), file.string());
-}
-
 }  // namespace
 
 MapOperands parse_map(std::string_view operands) {
@@ -148,15 +145,19 @@ MapOperands parse_map(std::string_view operands) {
     return result;
 }
 
-TextureReader::TextureReader(const fs::path& model, Scene& into, MaterialTally& lost)
-    : folder(model.parent_path()), scene(into), tally(lost) {}
+TextureReader::TextureReader(ModelFolders of_model, Scene& into, MaterialTally& lost)
+    : folders(std::move(of_model)), scene(into), tally(lost) {}
+
+Raster TextureReader::decode(const fs::path& file) const {
+    return decode_image(read_allowed(folders, file, max_texture_size), file.string());
+}
 
 // A name may have a comment behind it, or hold what looks like one.
 Found TextureReader::locate(const MtlEntry& entry, const std::string& name) const {
-    Found found = find_below(folder, entry.from, name);
+    Found found = find_below(folders, entry.from, name);
     const std::string_view bare = name_without_comment(name);
     if (found.file.empty() && found.refusal.empty() && bare != name)
-        found = find_below(folder, entry.from, bare);
+        found = find_below(folders, entry.from, bare);
     return found;
 }
 
@@ -164,7 +165,7 @@ void TextureReader::expect(const MtlEntry& entry, const Statement& statement) {
     const std::string name = parse_map(statement.operands).file;
     if (name.empty()) return;
     const fs::path file = locate(entry, name).file;
-    if (!file.empty()) store.expect(file.string(), [file] { return decode(file); });
+    if (!file.empty()) store.expect(file.string(), [this, file] { return decode(file); });
 }
 
 std::optional<MapImage> TextureReader::open(const MtlEntry& entry, const Statement& statement) {
@@ -186,6 +187,8 @@ std::optional<MapImage> TextureReader::open(const MtlEntry& entry, const Stateme
     image.file = found.file;
     try {
         raster(image);
+    } catch (const MemoryError&) {
+        throw;
     } catch (const Error& error) {
         broken.try_emplace(image.file.string(), error.what());
         return lose(fmt::format("is ignored: {}", error.what()));
@@ -229,6 +232,7 @@ Index TextureReader::derived(const MapImage& image, const std::string& use, bool
         fmt::format("{} {} {}", image.operands.clamp, use, image.file.string()), no_index);
     if (!fresh) return place->second;
     const Wrap wrap = image.operands.clamp ? Wrap::clamp : Wrap::repeat;
+    const MemoryClaim claim(this->raster(image).data.size(), image.file.string());
     Raster raster = make();
     scene.textures.push_back(
         {.name = image.file.stem().string() + '_' + use.substr(0, use.find(' ')),

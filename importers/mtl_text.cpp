@@ -1,4 +1,4 @@
-#include "file.h"
+#include "memory.h"
 #include "obj.h"
 
 #include <fmt/format.h>
@@ -13,11 +13,25 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t max_library_size = std::uintmax_t(256) << 20;
 
-void read_library(std::vector<MtlEntry>& entries, const fs::path& file, const fs::path& folder,
+std::string library_text(const ModelFolders& folders, const fs::path& file) {
+    const auto bytes = read_allowed(folders, file, max_library_size);
+    return join_lines(
+        to_utf8(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size())));
+}
+
+// The folder of `file` seen from the model's; absolute where there is no way from that one.
+fs::path folder_from(const fs::path& own, const fs::path& file) {
+    const fs::path way = file.lexically_relative(own.empty() ? "." : own);
+    return way.empty() ? file.parent_path() : way.parent_path();
+}
+
+void read_library(std::vector<MtlEntry>& entries, const fs::path& file, const ModelFolders& folders,
                   Losses& losses) {
-    const std::string text = join_lines(to_utf8(read_text(file, max_library_size)));
-    const fs::path from = file.lexically_relative(folder.empty() ? "." : folder).parent_path();
+    const std::string text = library_text(folders, file);
+    const fs::path from = folder_from(folders.own, file);
     const std::string name = file.string();
+    constexpr std::size_t most_of_a_byte = sizeof(Statement) / 4;  // "a b\n"
+    const MemoryClaim claim(times(text.size(), most_of_a_byte), name);
     Index line = 0;
     bool inside = false, told = false;
     for (std::size_t at = 0; at < text.size();) {
@@ -29,7 +43,7 @@ void read_library(std::vector<MtlEntry>& entries, const fs::path& file, const fs
         const std::string key = lower_case(word);
         if (key.empty() || key.front() == '#') continue;
         if (key == "newmtl") {
-            entries.push_back({.name = std::string(name_without_comment(rest)),
+            entries.push_back({.name = kept_name(name_without_comment(rest)),
                                .file = name,
                                .from = from,
                                .line = line});
@@ -48,13 +62,13 @@ struct Library {
 };
 
 // The names in a list; `blanks` lets a name go on to the next ".mtl".
-std::vector<Library> listed(std::string_view operand, const fs::path& folder, bool blanks) {
+std::vector<Library> listed(std::string_view operand, const ModelFolders& folders, bool blanks) {
     std::vector<Library> result;
     std::string name;
     for (auto word = next_word(operand); !word.empty(); word = next_word(operand)) {
         (name += name.empty() ? "" : " ") += word;
         if (blanks && !lower_case(word).ends_with(".mtl")) continue;
-        result.push_back({name, find_below(folder, {}, name)});
+        result.push_back({name, find_below(folders, {}, name)});
         name.clear();
     }
     return result;
@@ -62,26 +76,27 @@ std::vector<Library> listed(std::string_view operand, const fs::path& folder, bo
 
 // The files that a mtllib means: one name with blanks, as most programs write it, if there is such
 // a file; else a list of names, with blanks or, as the format defines it, without.
-std::vector<Library> files_of(std::string_view operand, const fs::path& folder) {
-    std::vector whole = {Library{std::string(operand), find_below(folder, {}, operand)}};
+std::vector<Library> files_of(std::string_view operand, const ModelFolders& folders) {
+    std::vector whole = {Library{std::string(operand), find_below(folders, {}, operand)}};
     const auto exists = [](const Library& library) { return !library.found.file.empty(); };
-    for (const auto& names : {whole, listed(operand, folder, true), listed(operand, folder, false)})
+    for (const auto& names :
+         {whole, listed(operand, folders, true), listed(operand, folders, false)})
         if (std::ranges::any_of(names, exists)) return names;
     return whole;
 }
 
 }  // namespace
 
-std::vector<MtlEntry> read_libraries(const std::vector<Named>& libraries, const fs::path& model,
-                                     Losses& losses) {
+std::vector<MtlEntry> read_libraries(const std::vector<Named>& libraries, const std::string& model,
+                                     const ModelFolders& folders, Losses& losses) {
     std::vector<MtlEntry> entries;
     std::vector<fs::path> known;
     for (const Named& operand : libraries) {
         const auto lose = [&](const std::string& what) {
-            losses.push_back({place_of(model.string(), operand.line), "material library " + what});
+            losses.push_back({place_of(model, operand.line), "material library " + what});
         };
         const std::string_view names = name_without_comment(operand.name);
-        for (const auto& [name, found] : files_of(names, model.parent_path())) {
+        for (const auto& [name, found] : files_of(names, folders)) {
             const std::string quoted = fmt::format("'{}'", printable(name));
             if (!found.refusal.empty())
                 lose(fmt::format("{} {}", quoted, found.refusal));
@@ -90,7 +105,9 @@ std::vector<MtlEntry> read_libraries(const std::vector<Named>& libraries, const 
             if (found.file.empty() || std::ranges::find(known, found.file) != known.end()) continue;
             known.push_back(found.file);
             try {
-                read_library(entries, found.file, model.parent_path(), losses);
+                read_library(entries, found.file, folders, losses);
+            } catch (const MemoryError&) {
+                throw;
             } catch (const Error& error) {
                 lose(fmt::format("is ignored: {}", error.what()));
             }

@@ -7,7 +7,7 @@
 
 namespace penumbra {
 
-Imported read_obj(const std::filesystem::path& file) {
+Imported read_obj(const std::filesystem::path& file, const ModelOptions& options) {
     const std::string name = file.string();
     Imported result;
     obj::Tally tally(name);
@@ -20,8 +20,9 @@ Imported read_obj(const std::filesystem::path& file) {
     if (model.faces.empty()) throw Error(Failure::input, name, "no facets in it");
 
     obj::resolve_normals(model, tally);
-    const auto entries = obj::read_libraries(libraries, file, result.losses);
-    obj::build_materials(model, entries, file, result);
+    const ModelFolders folders = {.own = file.parent_path(), .allowed = options.allowed_paths};
+    const auto entries = obj::read_libraries(libraries, name, folders, result.losses);
+    obj::build_materials(model, entries, folders, result);
     obj::build_meshes(std::move(model), result.scene, tally);
     tally.append_to(result.losses);
     result.models.push_back({.file = name, .format = "OBJ"});

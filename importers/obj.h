@@ -6,6 +6,7 @@
 #pragma once
 
 #include "image_store.h"
+#include "model_folders.h"
 
 #include "penumbra/importers.h"
 
@@ -28,7 +29,7 @@ namespace penumbra::obj {
 class Tally {
   public:
     explicit Tally(std::string of_file) : file(std::move(of_file)) {}
-    /// `line` 0: the file as a whole.
+    /// `line` 0: the file as a whole. Beyond a thousand kinds all are one.
     void add(const std::string& what, Index line);
     /// In order of first occurrence; "(n times)" is added to what occurred more than once.
     void append_to(Losses& losses) const;
@@ -90,11 +91,11 @@ struct Found {
     std::string refusal = {};         ///< why the name was not followed as it stands; may be empty
 };
 
-/// Looks for `name`, as an OBJ or MTL file writes it, in `folder` or below. `from` is where the
-/// naming file lies, relative to `folder`. Backslashes separate too, case is ignored where there
-/// is no exact match. A path that leads out of the folder is refused; a file of the same name in
-/// the folder is taken for it.
-Found find_below(const std::filesystem::path& folder, const std::filesystem::path& from,
+/// Looks for `name`, as an OBJ or MTL file writes it, in the model's folder or below. `from` is
+/// where the naming file lies, relative to that folder. Backslashes separate too, case is ignored
+/// where there is no exact match. A path that leads to no allowed folder is refused; a file of the
+/// same name in the model's folder is taken for it.
+Found find_below(const ModelFolders& folders, const std::filesystem::path& from,
                  std::string_view name);
 
 // ---- obj_text.cpp -----------------------------------------------------------------------------
@@ -225,8 +226,8 @@ class MaterialTally {
 };
 
 /// Reads the materials of all libraries that a model names. What is missing is lost, not wrong.
-std::vector<MtlEntry> read_libraries(const std::vector<Named>& libraries,
-                                     const std::filesystem::path& model, Losses& losses);
+std::vector<MtlEntry> read_libraries(const std::vector<Named>& libraries, const std::string& model,
+                                     const ModelFolders& folders, Losses& losses);
 
 // ---- mtl_values.cpp ---------------------------------------------------------------------------
 
@@ -270,7 +271,7 @@ struct MapImage {
 /// Decodes texture files, each once as far as memory allows.
 class TextureReader {
   public:
-    TextureReader(const std::filesystem::path& model, Scene& into, MaterialTally& lost);
+    TextureReader(ModelFolders of_model, Scene& into, MaterialTally& lost);
 
     /// The image that `statement` names, if there is one, will be opened later: it may be decoded
     /// ahead.
@@ -294,7 +295,9 @@ class TextureReader {
   private:
     Found locate(const MtlEntry& entry, const std::string& name) const;
 
-    std::filesystem::path folder = {};
+    Raster decode(const std::filesystem::path& file) const;
+
+    ModelFolders folders = {};
     Scene& scene;
     MaterialTally& tally;
     ImageStore store = {};                           ///< by file
@@ -306,6 +309,6 @@ class TextureReader {
 
 /// Appends the materials that the model uses.
 void build_materials(const Model& model, const std::vector<MtlEntry>& entries,
-                     const std::filesystem::path& file, Imported& result);
+                     const ModelFolders& folders, Imported& result);
 
 }  // namespace penumbra::obj

@@ -1,4 +1,5 @@
 #include "obj.h"
+#include "suggest.h"
 
 #include <algorithm>
 #include <cstring>
@@ -164,9 +165,7 @@ std::string printable(std::string_view text) {
     constexpr std::size_t longest = 60;
     std::size_t size = std::min(text.size(), longest);
     while (size < text.size() && size > 0 && (text[size] & '\xc0') == '\x80') --size;
-    std::string result(text.substr(0, size));
-    for (char& c : result)
-        if ((c >= 0 && c < ' ') || c == '\x7f') c = '?';
+    const std::string result = penumbra::printable(text.substr(0, size));
     return size < text.size() ? result + "..." : result;
 }
 

@@ -1,3 +1,4 @@
+#include "memory.h"
 #include "obj.h"
 #include "parallel.h"
 #include "triangulate.h"
@@ -78,11 +79,19 @@ struct Builder {
         return Vec2f(model.texcoords[index]);
     }
 
+    // All arrays of vertices grow alike.
+    void claim_growth() const {
+        constexpr std::size_t each =
+            sizeof(Vertex) + sizeof(Index) + 2 * sizeof(Vec3f) + sizeof(Vec2f) + sizeof(Color);
+        const MemoryClaim claim(times(2 * mesh.positions.size() + 1, each), model.file);
+    }
+
     Index vertex(const Corner& corner) {
         Index& chain = first[corner.position];
         for (Index at = chain; at != no_index; at = vertices[at].next)
             if (vertices[at].texcoord == corner.texcoord && vertices[at].normal == corner.normal)
                 return at;
+        if (mesh.positions.size() == mesh.positions.capacity()) claim_growth();
         if (chain == no_index) touched.push_back(corner.position);
         vertices.push_back({corner.texcoord, corner.normal, chain});
         mesh.positions.emplace_back(model.positions[corner.position] - origin);
@@ -180,6 +189,7 @@ struct Builder {
                 if (bare == 0 && corner.texcoord == no_index) bare = face.line;
             }
         }
+        const MemoryClaim claim(times(facets, sizeof(Triangle)), model.file);
         mesh.triangles.reserve(facets);
         if (mapped && bare)
             tally.add("facets of a textured material without texture coordinates take those of "

@@ -1,3 +1,4 @@
+#include "memory.h"
 #include "obj.h"
 #include "parallel.h"
 #include "triangulate.h"
@@ -37,6 +38,7 @@ struct Smoother {
         Index& at = sum_of[position];
         if (at == no_index) {
             at = Index(sums.size());
+            make_room(sums, model.file);
             sums.push_back({.position = position});
         }
         return sums[at];
@@ -96,6 +98,7 @@ struct Smoother {
                 if (!(sum.sum.length() > 1e-9 * sum.weight)) continue;
                 if (normal_of[at] == no_index) {
                     normal_of[at] = Index(model.normals.size());
+                    make_room(model.normals, model.file);
                     model.normals.push_back(sum.sum.normalized());
                 }
                 corner.normal = normal_of[at];
@@ -126,6 +129,7 @@ std::vector<Index> smoothed_faces(const Model& model) {
 void resolve_normals(Model& model, Tally& tally) {
     const std::vector<Index> faces = smoothed_faces(model);
     if (!faces.empty()) {
+        const MemoryClaim claim(times(model.positions.size(), sizeof(Index)), model.file);
         Smoother smoother = {.model = model};
         const auto group = [&](Index i) { return model.faces[i].smoothing; };
         for (auto begin = faces.begin(); begin != faces.end();) {

@@ -1,3 +1,4 @@
+#include "memory.h"
 #include "obj.h"
 #include "parallel.h"
 
@@ -189,6 +190,7 @@ struct Naming {
         if (part != no_index) return part;
         const std::string key = fmt::format("{}\n{}\n{}", object, group, material);
         const auto [found, fresh] = parts.try_emplace(key, Index(model.parts.size()));
+        const MemoryClaim claim(fresh ? 4 * key.size() + 256 : 0, model.file);
         if (fresh) model.parts.push_back({part_name(), material});
         return part = found->second;
     }
@@ -243,12 +245,20 @@ std::vector<Color> linear_colors(const std::vector<Piece>& pieces, const Counts&
     return colors;
 }
 
+// Of a Model's arrays, in bytes.
+std::size_t size_of(const Counts& counts) {
+    return (counts.positions + counts.normals) * sizeof(Vec3) + counts.texcoords * sizeof(Vec2) +
+           counts.corners * sizeof(Corner) + counts.faces * sizeof(Face) +
+           counts.positions * sizeof(Color);
+}
+
 }  // namespace
 
 Model parse(const std::vector<Piece>& pieces, const std::string& file, Tally& tally) {
     std::vector<Counts> firsts = {{}};
     for (const Piece& piece : pieces) firsts.push_back(firsts.back() + piece.counts);
     const Counts totals = firsts.back();
+    const MemoryClaim claim(size_of(totals), file);
     Model model = {.file = file,
                    .positions = std::vector<Vec3>(totals.positions),
                    .texcoords = std::vector<Vec2>(totals.texcoords),

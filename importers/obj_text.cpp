@@ -1,5 +1,8 @@
+#include "memory.h"
 #include "obj.h"
 #include "parallel.h"
+
+#include "penumbra/limits.h"
 
 #include <fmt/format.h>
 
@@ -121,6 +124,7 @@ struct Cleaner {
             color[i] = std::max(number(rest), 0.0F);
             result.brightest = std::max(result.brightest, color[i]);
         }
+        make_room(result.colors, file);
         result.colors.push_back(color);
     }
 
@@ -190,12 +194,18 @@ struct Cleaner {
             result.text.resize(begin);
             return;
         }
+        make_room(result.face_lines, file);
         result.face_lines.push_back(line);
         ++result.counts.faces;
         result.counts.corners += count;
     }
 
     void change(Change::Of of, std::string name, Index number = 0) {
+        // Of what is said twice before a face the second counts.
+        if (of != Change::Of::material && !result.changes.empty() &&
+            result.changes.back().of == of && result.changes.back().face == result.counts.faces)
+            result.changes.pop_back();
+        make_room(result.changes, file);
         result.changes.push_back({of, result.counts.faces, std::move(name), number, line});
     }
 
@@ -217,9 +227,10 @@ struct Cleaner {
     static std::string group_names(std::string_view text) {
         std::string names;
         std::string_view rest = name_without_comment(text);
-        for (auto word = next_word(rest); !word.empty(); word = next_word(rest))
+        for (auto word = next_word(rest); !word.empty() && names.size() <= max_name;
+             word = next_word(rest))
             (names += names.empty() ? "" : " ") += word;
-        return names;
+        return kept_name(names);
     }
 
     void other(std::string_view keyword) {
@@ -239,15 +250,16 @@ struct Cleaner {
         if (keyword == "vn") return normal(plain);
         if (keyword == "s") return smoothing(plain);
         if (keyword == "usemtl")
-            return change(Change::Of::material, std::string(name_without_comment(text)));
+            return change(Change::Of::material, kept_name(name_without_comment(text)));
         if (keyword == "o")
-            return change(Change::Of::object, std::string(name_without_comment(text)));
+            return change(Change::Of::object, kept_name(name_without_comment(text)));
         if (keyword == "g") return change(Change::Of::group, group_names(text));
         if (keyword == "mtllib") return result.libraries.push_back({std::string(trim(text)), line});
         other(keyword);
     }
 
     void clean(std::string_view lines) {
+        const MemoryClaim claim(2 * lines.size(), file);
         result.text.reserve(lines.size() + 1);
         for (std::size_t at = 0; at < lines.size(); ++line) {
             const std::size_t end = std::min(lines.find('\n', at), lines.size());
@@ -273,7 +285,10 @@ std::vector<std::string_view> pieces_of(std::string_view text) {
 }  // namespace
 
 std::vector<Piece> clean_obj(std::string bytes, const std::string& file, Tally& tally) {
+    const std::size_t size = bytes.size();
+    MemoryClaim claim(2 * size, file);
     const std::string text = join_lines(to_utf8(std::move(bytes)));
+    claim = {};
     const std::vector<std::string_view> lines = pieces_of(text);
     std::vector<Piece> pieces(lines.size());
     std::vector<Tally> tallies(lines.size(), Tally(file));

@@ -1,5 +1,6 @@
 // Sidecar files and KEY=VALUE settings -> Layer.
 #include "file.h"
+#include "memory.h"
 #include "sidecar_reader.h"
 #include "suggest.h"
 
@@ -11,6 +12,8 @@
 namespace penumbra {
 
 namespace {
+
+constexpr std::size_t deepest_key = 16;  // none has half as many parts
 
 std::string trimmed(std::string_view text) {
     constexpr std::string_view blank = " \t";
@@ -39,8 +42,7 @@ std::optional<Assignment> split(std::string_view text) {
             i = end;
         } else if (c == '.' || c == '=') {
             result.path.push_back(quoted ? word : trimmed(word));
-            constexpr std::size_t deepest = 16;  // no key has half as many words
-            if (result.path.back().empty() || result.path.size() > deepest) return std::nullopt;
+            if (result.path.back().empty() || result.path.size() > deepest_key) return std::nullopt;
             word.clear();
             quoted = false;
             if (c == '.') continue;
@@ -77,6 +79,64 @@ std::string one_sentence(const toml::parse_error& error) {
     return text;
 }
 
+// Walks through TOML text, part of a key by part of a key: strings, bare words and numbers.
+struct KeyParts {
+    std::string_view text;
+    std::size_t at = 0, line = 1;
+    std::size_t parts = 0;  // of what may be a key, so far
+    bool joined = false;    // a dot stands before
+
+    bool starts(std::string_view with) const { return text.substr(at).starts_with(with); }
+    void skip_to(std::string_view end, bool escapes) {
+        while (at < text.size() && !starts(end)) {
+            line += text[at] == '\n' ? 1 : 0;
+            at += escapes && text[at] == '\\' ? 2 : 1;
+        }
+        at = std::min(at + end.size(), text.size());
+    }
+    void part() {
+        parts = joined ? parts + 1 : 1;
+        joined = false;
+    }
+    void step();
+};
+
+void KeyParts::step() {
+    constexpr std::string_view bare = "_-+";
+    const char c = text[at];
+    if (c == '#') {
+        while (at < text.size() && text[at] != '\n') ++at;
+    } else if (c == '"' || c == '\'') {
+        const std::string three(3, c);
+        const auto end = starts(three) ? three : three.substr(0, 1);
+        at += end.size();
+        skip_to(end, c == '"');
+        part();
+    } else if (std::isalnum(static_cast<unsigned char>(c)) != 0 || bare.find(c) != bare.npos ||
+               static_cast<unsigned char>(c) >= 0x80) {
+        while (at < text.size() &&
+               (std::isalnum(static_cast<unsigned char>(text[at])) != 0 ||
+                bare.find(text[at]) != bare.npos || static_cast<unsigned char>(text[at]) >= 0x80))
+            ++at;
+        part();
+    } else {
+        joined = c == '.' || (joined && (c == ' ' || c == '\t'));
+        line += c == '\n' ? 1 : 0;
+        ++at;
+    }
+}
+
+// toml++ bounds the nesting of values, but not of tables by their keys, and recurses over them.
+void check_keys(std::string_view text, const std::string& name) {
+    KeyParts walk = {text};
+    while (walk.at < text.size()) {
+        walk.step();
+        if (walk.parts > deepest_key)
+            throw Error(Failure::input, fmt::format("{}:{}", name, walk.line),
+                        fmt::format("a key has more than {} parts", deepest_key));
+    }
+}
+
 // `text` as a TOML value, or as the string that it is.
 toml::table value_of(const std::string& text, const std::string& place) {
     try {
@@ -92,8 +152,12 @@ toml::table value_of(const std::string& text, const std::string& place) {
 }  // namespace
 
 Layer read_sidecar(const std::filesystem::path& file) {
-    const std::string text = read_text(file);
+    constexpr std::uintmax_t max_size = std::uintmax_t(64) << 20;
+    constexpr std::size_t most_of_a_byte = 48;  // of toml++'s nodes: "0,"
+    const std::string text = read_text(file, max_size);
+    const MemoryClaim claim(text.size() * most_of_a_byte, printable(file.string()));
     Layer layer = {.name = printable(file.string()), .folder = file.parent_path()};
+    check_keys(text, layer.name);
     try {
         layer.table = toml::parse(text, layer.name);
     } catch (const toml::parse_error& error) {

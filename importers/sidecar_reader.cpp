@@ -118,6 +118,14 @@ double Section::number(const std::string& key, const toml::node& node, const Ran
     return *value;
 }
 
+// Products of a few of them must neither overflow nor vanish.
+double Section::measure(const std::string& key, const toml::node& node, const Range& range) const {
+    const double value = number(key, node, range), size = std::abs(value);
+    if (size > 1e30) wrong(key, node, fmt::format("is too large: {}", value));
+    if (size > 0 && size < 1e-30) wrong(key, node, fmt::format("is too small: {}", value));
+    return value;
+}
+
 int Section::whole(const std::string& key, const toml::node& node, const Range& range) const {
     const auto value = as_number(node);
     if (!value) wrong(key, node, "must be a whole number, not " + type_of(node));
@@ -137,7 +145,7 @@ void Section::numbers(const std::string& key, const toml::node& node, std::span<
         if (!as_number((*list)[i]))
             wrong(key, (*list)[i],
                   fmt::format("must be {} of numbers, not {}", form, type_of((*list)[i])));
-        values[i] = number(key, (*list)[i], any_number);
+        values[i] = measure(key, (*list)[i], any_number);
     }
 }
 
@@ -159,7 +167,7 @@ Color Section::color(const std::string& key, const toml::node& node) const {
 
 bool Section::read(const std::string& key, double& value, const Range& range) {
     const toml::node* node = find(key);
-    if (node != nullptr) value = number(key, *node, range);
+    if (node != nullptr) value = measure(key, *node, range);
     return node != nullptr;
 }
 

@@ -130,6 +130,7 @@ class Section {
   private:
     const toml::node* find(const std::string& key);
     double number(const std::string& key, const toml::node& node, const Range& range) const;
+    double measure(const std::string& key, const toml::node& node, const Range& range) const;
     int whole(const std::string& key, const toml::node& node, const Range& range) const;
     Color color(const std::string& key, const toml::node& node) const;
     std::optional<std::size_t> choose(const std::string& key,

@@ -1,5 +1,7 @@
 #include "suggest.h"
 
+#include "plain_text.h"
+
 #include <algorithm>
 
 namespace penumbra {
@@ -59,7 +61,7 @@ std::string printable(std::string_view text) {
     std::string line(text);
     for (char& c : line)
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-    return line;
+    return one_line(line);
 }
 
 }  // namespace penumbra

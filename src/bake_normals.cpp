@@ -1,4 +1,5 @@
 // Normal maps -> vertex normals.
+#include "memory.h"
 #include "normal_baker.h"
 
 #include <fmt/format.h>
@@ -189,6 +190,15 @@ void keep_unmapped(const Material& material, Mesh& mesh, Losses& losses) {
                                              material.name)});
 }
 
+// Facets and their sides are numbered, and take several times what the mesh takes.
+MemoryClaim claim_for(const Mesh& mesh) {
+    constexpr std::size_t copies = 4, facet = 96;
+    const std::string place = "mesh " + mesh.name;
+    if (mesh.triangles.size() >= no_index / 3 - 1)
+        throw Error(Failure::input, place, "has too many facets for a normal map");
+    return {copies * memory_of(mesh) + facet * mesh.triangles.size(), place};
+}
+
 // Takes the maps off the materials, and says what was reached.
 Losses conclude(Scene& scene, const std::map<Index, Outcome>& outcomes) {
     Losses losses;
@@ -215,6 +225,7 @@ Losses bake_normal_maps(Scene& scene, const NormalMapBudget& budget) {
     std::map<Index, Outcome> outcomes;  // by material
     std::vector<NormalBaker> bakers;
     std::vector<Index> baked;
+    std::vector<MemoryClaim> claims;
     for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
         Mesh& mesh = scene.meshes[i];
         if (!has_normal_map(scene, mesh) || magnification[i] == 0) continue;
@@ -222,6 +233,7 @@ Losses bake_normal_maps(Scene& scene, const NormalMapBudget& budget) {
         Sampler& sampler = samplers[map.map.texture];
         if (sampler.texture == nullptr) sampler = make_sampler(scene.textures[map.map.texture]);
         outcomes[mesh.material].given += mesh.triangles.size();
+        claims.push_back(claim_for(mesh));
         bakers.push_back({map, sampler, magnification[i], Subdivision(std::move(mesh))});
         baked.push_back(Index(i));
     }

@@ -92,6 +92,8 @@ struct Examiner {
     void mesh(const Mesh& m) {
         const std::string who = fmt::format("mesh '{}'", m.name);
         const std::size_t count = m.positions.size();
+        require(count < no_index && m.triangles.size() < no_index,
+                who + " has more vertices or facets than can be numbered");
         bool fits = true;
         each_vertex_array(m, [&](const auto& v) { fits &= v.empty() || v.size() == count; });
         require(fits, who + " has per-vertex data of unequal lengths");
@@ -109,7 +111,7 @@ struct Examiner {
     void instance(const Instance& i) {
         const std::string who = fmt::format("instance '{}'", i.name);
         require(i.mesh < scene.meshes.size(), who + " refers to a missing mesh");
-        require(finite_matrix(i.transform) && i.transform.determinant() != 0,
+        require(finite_matrix(i.transform) && std::isnormal(i.transform.determinant()),
                 who + " has a transform that cannot be inverted");
     }
 
@@ -148,6 +150,8 @@ std::vector<std::string> defects(const Scene& scene) {
     for (const Material& m : scene.materials) examine.material(m);
     for (const Mesh& m : scene.meshes) examine.mesh(m);
     for (const Instance& i : scene.instances) examine.instance(i);
+    examine.require(scene.instances.size() < no_index,
+                    "there are more instances than can be numbered");
     for (const Sphere& s : scene.spheres) {
         const std::string who = fmt::format("sphere '{}'", s.name);
         examine.require(finite_vector(s.center) && s.radius > 0 && finite(s.radius),

@@ -7,7 +7,20 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <cstddef>
+
 namespace penumbra::embree {
+
+/// Lets the device ask before it takes memory: see penumbra/limits.h.
+void watch_memory(RTCDevice device);
+
+/// Throws what the device could not do: MemoryError (input) where it was refused memory.
+void check(RTCDevice device);
+
+/// Room for `count` vertices, or facets, of a geometry. Where there is none the geometry is
+/// released and check() throws.
+float* new_vertices(RTCDevice device, RTCGeometry geometry, std::size_t count);
+unsigned* new_indices(RTCDevice device, RTCGeometry geometry, std::size_t count);
 
 /// What a query tells Embree besides the ray: coherent packets traverse together.
 struct Query {

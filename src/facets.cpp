@@ -1,6 +1,7 @@
 #include "facets.h"
 
 #include "embree.h"
+#include "memory.h"
 #include "simd.h"
 
 #include <algorithm>
@@ -31,21 +32,38 @@ struct Width16 {
 RTCGeometry triangles_of(RTCDevice device, const Mesh& mesh, const Matrix& to_world,
                          bool identity) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-        std::max<std::size_t>(mesh.positions.size(), 1)));
+    float* vertices = embree::new_vertices(device, geometry, mesh.positions.size());
     for (const Vec3f& p : mesh.positions) {
         const Vec3f q = identity ? p : Vec3f(Vec3(p) * to_world);
         *vertices++ = q.x;
         *vertices++ = q.y;
         *vertices++ = q.z;
     }
-    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned),
-        std::max<std::size_t>(mesh.triangles.size(), 1)));
+    unsigned* indices = embree::new_indices(device, geometry, mesh.triangles.size());
     for (const auto& triangle : mesh.triangles)
         for (const Index corner : triangle) *indices++ = corner;
     return geometry;
+}
+
+// Embree takes no rays whose numbers are larger than 1.8e18, in the space of an instance either;
+// Debian's build of it aborts. Hostile scenes get that far, and sane ones not to here.
+constexpr double embree_limit = 1e15;
+
+bool embree_takes(const Vec3& v) {
+    return std::abs(v.x) + std::abs(v.y) + std::abs(v.z) < embree_limit;  // not if it is NaN
+}
+
+bool embree_takes(const Matrix& m) {
+    double sum = 0;
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 3; ++column) sum += std::abs(m[row][column]);
+    return sum < embree_limit;
+}
+
+// No ray goes further than greatest_depth, so that all start near the camera.
+bool camera_is_in_reach(const Scene& scene) {
+    return scene.camera >= scene.cameras.size() ||
+           embree_takes(scene.cameras[scene.camera].position);
 }
 
 // Embree's column-major 3x4 of our row-vector matrix.
@@ -92,7 +110,7 @@ struct Facets::Device {
     RTCScene scene = rtcNewScene(device);
     std::vector<RTCScene> shared = {};  // one for each mesh with several instances
 
-    Device() = default;
+    Device() { embree::watch_memory(device); }
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
     ~Device() {
@@ -122,6 +140,7 @@ struct Facets::Device {
             rtcAttachGeometryByID(inner, geometry, 0);
             rtcReleaseGeometry(geometry);
             rtcCommitScene(inner);
+            embree::check(device);
         }
         RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
         rtcSetGeometryInstancedScene(instance, inner);
@@ -132,10 +151,13 @@ struct Facets::Device {
 };
 
 Facets::Facets(const Scene& scene) : scene_(scene), device_(std::make_unique<Device>()) {
+    constexpr std::size_t each = sizeof(PlacedMesh) + 512;  // with Embree's own
+    const MemoryClaim claim(times(scene.instances.size(), each), "the scene");
     std::vector<int> uses(scene.meshes.size(), 0);
     for (const Instance& instance : scene.instances) ++uses[instance.mesh];
     device_->shared.resize(scene.meshes.size(), nullptr);
     rtcSetSceneFlags(device_->scene, RTC_SCENE_FLAG_ROBUST);
+    if (!camera_is_in_reach(scene)) return;
     Bounds box;
     for (Index i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
@@ -147,15 +169,17 @@ Facets::Facets(const Scene& scene) : scene_(scene), device_(std::make_unique<Dev
                              .smooth = material.smooth && !mesh.normals.empty(),
                              .opaque = opaque(material)};
         translucent_ |= !placed.opaque;
-        instanced_ |= uses[instance.mesh] > 1;
+        const bool shared = uses[instance.mesh] > 1 && embree_takes(instance.transform) &&
+                            embree_takes(placed.to_mesh);
+        instanced_ |= shared;
         RTCGeometry geometry =
-            uses[instance.mesh] > 1
-                ? device_->instance_of(mesh, instance.mesh, instance.transform)
-                : triangles_of(device_->device, mesh, instance.transform, placed.identity);
+            shared ? device_->instance_of(mesh, instance.mesh, instance.transform)
+                   : triangles_of(device_->device, mesh, instance.transform, placed.identity);
         device_->attach(geometry, i, placed.opaque);
         placed_.push_back(std::move(placed));
     }
     rtcCommitScene(device_->scene);
+    embree::check(device_->device);
     RTCBounds bounds{};
     rtcGetSceneBounds(device_->scene, &bounds);
     if (!placed_.empty() && bounds.lower_x <= bounds.upper_x) {
@@ -213,6 +237,7 @@ Index instance_in(const RTCRayHit& ray) {
 template <class Accept>
 bool Facets::walk(const Vec3& origin, const Vec3& direction, float from, double farthest,
                   unsigned mask, Accept accept) const {
+    if (!embree_takes(direction)) return false;
     embree::Query query(false);
     float near = from;
     while (true) {
@@ -293,7 +318,7 @@ void Facets::closest_packets(const Rays& rays, Hits& hits, bool coherent) const 
             const double shift = std::max(0.0, (center_ - origin).dot(direction) - reach_);
             const Vec3 start = shift > reach_ ? origin + direction * shift : origin;
             const double moved = shift > reach_ ? shift : 0;
-            valid[lane] = -1;
+            valid[lane] = embree_takes(direction) ? -1 : 0;
             packet.ray.org_x[lane] = float(start.x);
             packet.ray.org_y[lane] = float(start.y);
             packet.ray.org_z[lane] = float(start.z);

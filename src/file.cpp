@@ -1,11 +1,15 @@
 #include "file.h"
 
+#include "memory.h"
+
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <string>
 #include <system_error>
 
@@ -45,13 +49,9 @@ std::string reason(int error) {
 
 // Bytes of Buffer (string or vector) are read straight into place.
 template <class Buffer>
-Buffer read_whole(const std::filesystem::path& file, std::uintmax_t max) {
-    // Without O_NONBLOCK opening a FIFO would wait for its writer.
-    const Descriptor in(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-    if (in.number < 0) fail_input(file, errno);
-
+Buffer read_descriptor(int in, const std::filesystem::path& file, std::uintmax_t max) {
     struct stat status {};
-    if (::fstat(in.number, &status) != 0) fail_input(file, errno);
+    if (::fstat(in, &status) != 0) fail_input(file, errno);
     if (S_ISDIR(status.st_mode)) throw Error(Failure::input, file.string(), "is a folder");
     if (!S_ISREG(status.st_mode))
         throw Error(Failure::input, file.string(), "is not a regular file");
@@ -61,10 +61,11 @@ Buffer read_whole(const std::filesystem::path& file, std::uintmax_t max) {
                     "has " + std::to_string(size) + " bytes, more than the " + std::to_string(max) +
                         " that are read");
 
+    const MemoryClaim claim(std::size_t(size), file.string());
     Buffer content(std::size_t(size), typename Buffer::value_type{});
     std::size_t done = 0;
     while (done < content.size()) {
-        const ssize_t n = ::read(in.number, content.data() + done, content.size() - done);
+        const ssize_t n = ::read(in, content.data() + done, content.size() - done);
         if (n < 0 && errno == EINTR) continue;
         if (n < 0) fail_input(file, errno);
         if (n == 0) break;  // it shrank meanwhile
@@ -74,6 +75,14 @@ Buffer read_whole(const std::filesystem::path& file, std::uintmax_t max) {
     return content;
 }
 
+template <class Buffer>
+Buffer read_whole(const std::filesystem::path& file, std::uintmax_t max) {
+    // Without O_NONBLOCK opening a FIFO would wait for its writer.
+    const Descriptor in(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    if (in.number < 0) fail_input(file, errno);
+    return read_descriptor<Buffer>(in.number, file, max);
+}
+
 int write_all(int out, std::span<const std::byte> content) {
     while (!content.empty()) {
         const ssize_t n = ::write(out, content.data(), content.size());
@@ -81,7 +90,22 @@ int write_all(int out, std::span<const std::byte> content) {
         if (n < 0) return errno;
         content = content.subspan(std::size_t(n));
     }
-    return ::fsync(out) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
+    return 0;
+}
+
+int flush(int out) { return ::fsync(out) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno; }
+
+// What `from` holds, from its beginning.
+int copy_all(int from, int to) {
+    if (::lseek(from, 0, SEEK_SET) != 0) return errno;
+    std::vector<std::byte> buffer(std::size_t(1) << 16);
+    for (;;) {
+        const ssize_t n = ::read(from, buffer.data(), buffer.size());
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) return errno;
+        if (n == 0) return 0;
+        if (const int error = write_all(to, std::span(buffer).first(std::size_t(n)))) return error;
+    }
 }
 
 std::string name_beside(const std::filesystem::path& target) {
@@ -99,11 +123,11 @@ struct NewFile {
     explicit NewFile(const std::filesystem::path& target) {
         const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : ".";
         if (::access("/proc/self/fd", X_OK) == 0)  // which gives it its name later
-            number = ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+            number = ::open(folder.c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0666);
         if (number >= 0) return;
         do {
             name = name_beside(target);
-            number = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+            number = ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         } while (number < 0 && errno == EEXIST);
         if (number < 0) name.clear();
     }
@@ -132,6 +156,25 @@ struct NewFile {
 
 }  // namespace
 
+void remove_stale(const std::filesystem::path& folder, const std::string& prefix) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    std::vector<fs::path> stale;
+    fs::directory_iterator at(folder.empty() ? "." : folder, error);
+    for (; !error && at != fs::directory_iterator(); at.increment(error)) {
+        const std::string name = at->path().filename().string();
+        if (!name.starts_with(prefix) || !name.ends_with(".tmp")) continue;
+        pid_t process = 0;
+        const char* const end = name.data() + name.size() - 4;
+        auto [stop, wrong] = std::from_chars(name.data() + prefix.size(), end, process);
+        if (wrong != std::errc{} || process <= 0) continue;
+        unsigned count = 0;
+        if (stop != end && *stop == '-') stop = std::from_chars(stop + 1, end, count).ptr;
+        if (stop == end && ::kill(process, 0) != 0 && errno == ESRCH) stale.push_back(at->path());
+    }
+    for (const fs::path& path : stale) fs::remove_all(path, error);
+}
+
 std::string read_text(const std::filesystem::path& file, std::uintmax_t max) {
     return read_whole<std::string>(file, max);
 }
@@ -140,29 +183,59 @@ std::vector<std::byte> read_bytes(const std::filesystem::path& file, std::uintma
     return read_whole<std::vector<std::byte>>(file, max);
 }
 
-void write_file(const std::filesystem::path& file, std::span<const std::byte> content) {
+std::vector<std::byte> read_open(int descriptor, const std::filesystem::path& file,
+                                 std::uintmax_t max) {
+    return read_descriptor<std::vector<std::byte>>(descriptor, file, max);
+}
+
+struct StagedFile::Parts {
+    std::filesystem::path file;    // as the caller wrote it
+    std::filesystem::path target;  // empty: a device or pipe, which cannot be replaced
+    NewFile out;
+};
+
+StagedFile::StagedFile(const std::filesystem::path& file) {
     std::error_code ignored;
     if (std::filesystem::is_directory(file, ignored))
         throw Error(Failure::output, file.string(), "cannot write: is a folder");
-
-    // Devices and pipes (/dev/stdout) cannot be replaced, only written to.
-    if (std::filesystem::exists(file, ignored) &&
-        !std::filesystem::is_regular_file(file, ignored)) {
-        const Descriptor out(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
-        if (out.number < 0) fail_output(file, errno);
-        if (const int error = write_all(out.number, content)) fail_output(file, error);
-        return;
-    }
-
+    const bool special =
+        std::filesystem::exists(file, ignored) && !std::filesystem::is_regular_file(file, ignored);
     // Through a symbolic link the file it points to is replaced, not the link.
-    const std::filesystem::path target = std::filesystem::is_symlink(file, ignored)
-                                             ? std::filesystem::weakly_canonical(file, ignored)
-                                             : file;
-    NewFile out(target);
-    if (out.number < 0) fail_output(file, errno);
-    int error = write_all(out.number, content);
-    if (error == 0) error = out.rename_to(target);
-    if (error != 0) fail_output(file, error);
+    std::filesystem::path target = std::filesystem::is_symlink(file, ignored)
+                                       ? std::filesystem::weakly_canonical(file, ignored)
+                                       : file;
+    const auto beside =
+        special ? std::filesystem::temp_directory_path(ignored) / "penumbra" : target;
+    if (special) target.clear();
+    parts = std::unique_ptr<Parts>(new Parts{file, target, NewFile(beside)});
+    if (parts->out.number < 0) fail_output(special ? beside : file, errno);
+}
+
+StagedFile::~StagedFile() = default;
+
+int StagedFile::descriptor() const { return parts->out.number; }
+
+void StagedFile::write(std::span<const std::byte> content) {
+    if (const int error = write_all(descriptor(), content)) fail_output(parts->file, error);
+}
+
+void StagedFile::commit() {
+    int error = 0;
+    if (parts->target.empty()) {
+        const Descriptor out(::open(parts->file.c_str(), O_WRONLY | O_CLOEXEC));
+        error = out.number < 0 ? errno : copy_all(descriptor(), out.number);
+    } else {
+        remove_stale(parts->target.parent_path(), parts->target.filename().string() + ".");
+        error = flush(descriptor());
+        if (error == 0) error = parts->out.rename_to(parts->target);
+    }
+    if (error != 0) fail_output(parts->file, error);
+}
+
+void write_file(const std::filesystem::path& file, std::span<const std::byte> content) {
+    StagedFile out(file);
+    out.write(content);
+    out.commit();
 }
 
 void write_file(const std::filesystem::path& file, std::string_view content) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,9 +23,38 @@ inline constexpr std::uintmax_t max_file_size = std::uintmax_t(4) << 30;
 std::string read_text(const std::filesystem::path& file, std::uintmax_t max = max_file_size);
 std::vector<std::byte> read_bytes(const std::filesystem::path& file,
                                   std::uintmax_t max = max_file_size);
+/// The same of what `descriptor` is open on; `file` is its name for messages.
+std::vector<std::byte> read_open(int descriptor, const std::filesystem::path& file,
+                                 std::uintmax_t max = max_file_size);
 
-/// Replaces `file` in one step: writes a file beside it, flushes it to the disk and renames it, so
-/// that whatever fails or interrupts leaves what was there. Throws Error (output).
+/// Removes the files and folders PREFIX<id>.tmp and PREFIX<id>-<number>.tmp in `folder` which
+/// processes have left there that were killed: where there is no process of that id.
+void remove_stale(const std::filesystem::path& folder, const std::string& prefix);
+
+/// A file in the making, which takes its name in one step when it is whole. It lies beside that
+/// name and, where the file system can, has none of its own until then, so that whatever fails or
+/// interrupts leaves what was there. All throw Error (output).
+class StagedFile {
+  public:
+    explicit StagedFile(const std::filesystem::path& file);
+    ~StagedFile();
+    StagedFile(const StagedFile&) = delete;
+    StagedFile& operator=(const StagedFile&) = delete;
+
+    /// Appends.
+    void write(std::span<const std::byte> content);
+    /// Of the system; open for reading and writing.
+    int descriptor() const;
+    /// Flushes to the disk and replaces the file. Devices and pipes cannot be replaced; they are
+    /// written to.
+    void commit();
+
+  private:
+    struct Parts;
+    std::unique_ptr<Parts> parts;
+};
+
+/// Replaces `file` in one step, as a StagedFile. Throws Error (output).
 void write_file(const std::filesystem::path& file, std::span<const std::byte> content);
 void write_file(const std::filesystem::path& file, std::string_view content);
 

@@ -1,9 +1,12 @@
 // What src/image.cpp asks of the image module, the shared library that holds OpenImageIO.
 #pragma once
 
+#include "row_encoder.h"
+
 #include "penumbra/image.h"
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,26 +19,29 @@ struct Decoded {
     std::string problem = {};  ///< empty: success
 };
 
-/// The bytes of an image file; `problem` says why there are none.
-struct Encoded {
-    std::vector<std::byte> file = {};
-    std::string problem = {};  ///< empty: success
-};
+/// Asked before so many bytes of memory are taken, for which a file's header calls; what was
+/// allowed before is in use by then. Where the answer is no, `problem` becomes no_memory.
+using MayTake = std::function<bool(std::size_t)>;
+
+inline constexpr const char* no_memory = "not enough memory";
 
 /// The module's functions. They never throw and may be called from several threads at once.
 struct ImageModule {
     int abi;  ///< image_module_abi of the build that made the module
 
     /// `extension`, such as ".tga", decides only about files whose first bytes do not tell.
-    Decoded (*decode)(std::span<const std::byte> file, const std::string& extension);
+    Decoded (*decode)(std::span<const std::byte> file, const std::string& extension,
+                      const MayTake& may_take);
 
-    /// Writes the samples as they are, in the format of `extension` and the nearest depth that it
-    /// has. `srgb` adds the format's mark for sRGB-encoded samples.
-    Encoded (*encode)(const Raster& raster, const std::string& extension, bool srgb);
+    /// Will write samples as they are into the empty file that `descriptor` stands for, open for
+    /// reading and writing, in the format of `extension` and the nearest depth that it has. `frame`
+    /// needs no data; `srgb` adds the format's mark for sRGB-encoded samples.
+    OpenedEncoder (*open_encoder)(const Raster& frame, const std::string& extension, bool srgb,
+                                  int descriptor);
 };
 
 /// Changes with every change of ImageModule or of the types it uses.
-inline constexpr int image_module_abi = 1;
+inline constexpr int image_module_abi = 3;
 
 /// The one symbol of the module, of type const ImageModule*().
 inline constexpr const char* image_module_entry = "penumbra_image_module";

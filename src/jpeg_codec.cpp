@@ -18,8 +18,9 @@ struct Reader {
     std::jmp_buf escape = {};
     std::array<char, JMSG_LENGTH_MAX> message = {};
     Raster raster = {};
+    const MayTake& may_take;
 
-    Reader() {
+    explicit Reader(const MayTake& asked) : may_take(asked) {
         jpeg.err = jpeg_std_error(&errors);
         jpeg.client_data = this;
         errors.error_exit = on_error;
@@ -40,6 +41,16 @@ struct Reader {
         if (level < 0) on_error(info);
     }
 
+    // What libjpeg keeps of a picture that comes in several scans: its coefficients.
+    std::size_t coefficients() {
+        if (jpeg_has_multiple_scans(&jpeg) == FALSE) return 0;
+        std::size_t blocks = 0;
+        for (int i = 0; i < jpeg.num_components; ++i)
+            blocks += std::size_t(jpeg.comp_info[i].width_in_blocks + MAX_SAMP_FACTOR) *
+                      std::size_t(jpeg.comp_info[i].height_in_blocks + MAX_SAMP_FACTOR);
+        return blocks * sizeof(JBLOCK);
+    }
+
     void refuse(const char* why) {
         std::snprintf(message.data(), message.size(), "%s", why);
         std::longjmp(escape, 1);
@@ -58,7 +69,9 @@ struct Reader {
         raster.height = int(height);
         raster.channels = grey ? 1 : 3;
         const std::size_t row = width * std::size_t(raster.channels);
+        if (!may_take(row * height)) refuse(no_memory);
         raster.data.resize(row * height);
+        if (!may_take(coefficients() + 64 * row)) refuse(no_memory);
         jpeg_start_decompress(&jpeg);
         while (jpeg.output_scanline < jpeg.output_height) {
             auto* to =
@@ -76,8 +89,31 @@ bool is_jpeg(std::span<const std::byte> file) {
            file[2] == std::byte(0xFF);
 }
 
-Decoded decode_jpeg(std::span<const std::byte> file) {
-    Reader reader;
+// ITU-T T.81, annex B: marker segments, and entropy-coded data behind a start of scan.
+bool has_too_many_scans(std::span<const std::byte> file) {
+    constexpr std::size_t most_work = std::size_t(1) << 30, always = 16;
+    const auto byte = [&](std::size_t i) {
+        return i < file.size() ? std::to_integer<std::size_t>(file[i]) : 0;
+    };
+    std::size_t scans = 0, pixels = 0;
+    for (std::size_t at = 2; at + 4 <= file.size();) {
+        const std::size_t marker = byte(at) == 0xFF ? byte(at + 1) : 0;
+        const bool alone = marker == 0 || marker == 0xFF || (marker >= 0xD0 && marker <= 0xD7);
+        if (alone) {  // within data, or padding
+            ++at;
+            continue;
+        }
+        if (marker == 0xD9) break;
+        if (marker == 0xDA) ++scans;
+        if (marker >= 0xC0 && marker <= 0xC2)
+            pixels = (byte(at + 5) << 8 | byte(at + 6)) * (byte(at + 7) << 8 | byte(at + 8));
+        at += 2 + (byte(at + 2) << 8 | byte(at + 3));
+    }
+    return scans > always && scans * pixels > most_work;
+}
+
+Decoded decode_jpeg(std::span<const std::byte> file, const MayTake& may_take) {
+    Reader reader(may_take);
     if (setjmp(reader.escape) != 0) return {.problem = reader.message.data()};
     reader.read(file);
     return {.raster = std::move(reader.raster)};

@@ -28,7 +28,8 @@ double area_of(const NormalBaker& baker, Index facet) {
 
 // A facet is looked at in the centres of n x n equal parts, about one for four texels.
 int parts_of(const NormalBaker& baker, Index facet) {
-    return std::clamp(int(std::ceil(std::sqrt(texels_on(baker, facet) / 4))), 2, 4);
+    // As a number first: texture coordinates may be huge.
+    return int(std::max(2.0, std::min(4.0, std::ceil(std::sqrt(texels_on(baker, facet) / 4)))));
 }
 
 // Calls visit(weights of the corners) at the centre of each part.

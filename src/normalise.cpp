@@ -1,3 +1,5 @@
+#include "memory.h"
+
 #include "penumbra/scene.h"
 
 #include <half.h>
@@ -11,6 +13,7 @@ namespace penumbra {
 namespace {
 
 constexpr double target_radius = 8;  // the scene's radius ends in [8, 16)
+constexpr double most = 1e30;        // of what rescales a mesh: well within float32
 constexpr double far_away = 64;      // radii from the origin where float32 begins to suffer
 
 // The power of two that brings `length` into [target, 2 target).
@@ -22,6 +25,13 @@ double power_of_two_to(double target, double length) {
 // The mean length of the transform's axes.
 double scale_of(const Matrix& m) { return std::cbrt(std::abs(m.determinant())); }
 
+double extent_of(const Mesh& mesh) {
+    float extent = 0;
+    for (const Vec3f& p : mesh.positions)
+        extent = std::max({extent, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    return extent;
+}
+
 // Gives each mesh vertices near the scale of the world, by powers of two: POV-Ray applies some of
 // its tolerances, and float32, in the mesh's own space.
 void rescale_meshes(Scene& scene, double factor) {
@@ -31,6 +41,10 @@ void rescale_meshes(Scene& scene, double factor) {
     for (std::size_t k = 0; k < scene.meshes.size(); ++k) {
         const double size = largest[k] * factor;
         largest[k] = size > 0 ? std::exp2(std::round(std::log2(size))) : 1;
+        // Hostile transforms flatten a mesh that is far larger than they make it.
+        if (!(largest[k] > 1 / most && largest[k] < most &&
+              largest[k] * extent_of(scene.meshes[k]) < most))
+            largest[k] = 1;
         const auto multiplier = float(largest[k]);
         if (multiplier != 1)
             for (Vec3f& p : scene.meshes[k].positions) p *= multiplier;
@@ -116,6 +130,8 @@ void develop_sky(Scene& scene) {
     const Texture& source = scene.textures[scene.sky->texture];
     if (scene.sky->gain == 1 && source.raster.depth != Depth::f32) return;
     const Raster& in = source.raster;
+    const MemoryClaim claim(in.data.size() + in.texels() * 3 * sizeof(float),
+                            "texture " + source.name);
     Texture out = source;
     out.raster.depth = Depth::f32;
     out.raster.channels = 3;
@@ -137,6 +153,7 @@ void develop_sky(Scene& scene) {
 // The texture times `color`, in 16-bit linear: both renderers then read the same numbers.
 Texture tinted(const Texture& texture, const Color& color) {
     const Raster& in = texture.raster;
+    const MemoryClaim claim(in.data.size() + in.texels() * 6, "texture " + texture.name);
     Texture out = texture;
     out.name += "_tinted";
     out.srgb = false;

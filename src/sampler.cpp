@@ -18,7 +18,7 @@ struct Texels {
 double positive_remainder(double value, double modulus) {
     double rest = std::fmod(value, modulus);
     if (rest < 0) rest += modulus;
-    return rest >= modulus ? 0 : rest;
+    return rest < modulus ? rest : 0;  // NaN, of coordinates that overflow, becomes 0
 }
 
 int wrapped(int index, int size, Wrap wrap) {
@@ -35,9 +35,10 @@ int wrapped(int index, int size, Wrap wrap) {
 Texels texels(double position, int size, Wrap wrap, bool bilinear, bool from_top) {
     const int period = wrap == Wrap::mirror ? 2 * size : size;
     double x = 0;
-    if (wrap == Wrap::clamp)
-        x = from_top ? size - position : position;
-    else {
+    if (wrap == Wrap::clamp) {
+        // Further out every texel is the same, and an int may not hold it.
+        x = std::max(-1.0, std::min(size + 1.0, from_top ? size - position : position));
+    } else {
         x = std::fmod(position, period) + 1e-10;
         x = positive_remainder(from_top ? -x : x, period);
         // The period, from its top, is the image upside down and then the image.

@@ -1,4 +1,5 @@
 // Per-vertex tangents of texture coordinates.
+#include "memory.h"
 #include "normal_map.h"
 #include "vertices.h"
 #include "weld.h"
@@ -87,6 +88,9 @@ Tangent tangent_of(const Vec3& sum, const Vec3f& normal, int handedness) {
 void compute_tangents(Mesh& mesh, const ImageMap& map) {
     if (mesh.texcoords.empty()) return;
     if (mesh.normals.empty()) give_facet_normals(mesh);
+    const MemoryClaim claim(mesh.positions.size() * (2 * sizeof(Vec3) + 4 * sizeof(Index)) +
+                                mesh.triangles.size() * 2 * sizeof(FacetTangent),
+                            "mesh " + mesh.name);
     const std::vector<Index> first = welded_vertices(mesh);
     std::vector<FacetTangent> facets;
     for (const auto& facet : mesh.triangles) facets.push_back(facet_tangent(mesh, map, facet));

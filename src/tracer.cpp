@@ -3,24 +3,21 @@
 #include "lighting.h"
 #include "scatter.h"
 #include "shapes.h"
+#include "tile_rows.h"
 #include "variation.h"
 #include "world.h"
 
 #include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <mutex>
 
 namespace penumbra {
 
 namespace {
-
-constexpr int tile_side = 32;  // pixels; fixed, so that the picture does not depend on threads
 
 // A point of a pixel relative to its centre, in pixels, and how much it counts.
 struct PixelSample {
@@ -56,10 +53,6 @@ struct Workspace {
           light(capacity), pixels(capacity) {}
 
     static constexpr std::size_t capacity = std::size_t(tile_side) * tile_side;
-};
-
-struct Tile {
-    int x = 0, y = 0, width = 0, height = 0;
 };
 
 struct Job {
@@ -197,7 +190,8 @@ void trace_generations(const Job& job, Workspace& work) {
     }
 }
 
-void render_tile(const Job& job, const Tile& tile, Workspace& work, Image& image) {
+// `rows` begin with the first of the tile.
+void render_tile(const Job& job, const Tile& tile, Workspace& work, Image& rows) {
     work.pixels.assign(Workspace::capacity, Vec3(0));
     for (const PixelSample& sample : job.samples) {
         primary_rays(job, tile, sample, work.current);
@@ -205,39 +199,54 @@ void render_tile(const Job& job, const Tile& tile, Workspace& work, Image& image
     }
     for (int y = 0; y < tile.height; ++y)
         for (int x = 0; x < tile.width; ++x)
-            image.at(tile.x + x, tile.y + y) =
+            rows.at(tile.x + x, y) =
                 Color(work.pixels[std::size_t(y) * std::size_t(tile.width) + std::size_t(x)]);
 }
 
-std::vector<Tile> tiles_of(int width, int height) {
-    std::vector<Tile> tiles;
-    for (int y = 0; y < height; y += tile_side)
-        for (int x = 0; x < width; x += tile_side)
-            tiles.push_back(
-                {x, y, std::min(tile_side, width - x), std::min(tile_side, height - y)});
-    return tiles;
+// What one thread does until no tiles are left.
+void work_on(const Job& job, const Watch& watch, std::mutex& reporting, TileRows& tiles) {
+    Workspace work;
+    while (const auto next = tiles.next()) {
+        if (watch.stop.stop_requested()) return tiles.stop();
+        render_tile(job, next->tile, work, *next->rows);
+        const double done = tiles.finish(next->tile);
+        if (!watch.progress) continue;
+        const std::lock_guard lock(reporting);
+        watch.progress(done);
+    }
 }
 
-void render_tiles(const Job& job, const Watch& watch, Image& image) {
-    const std::vector<Tile> tiles = tiles_of(image.width, image.height);
-    tbb::enumerable_thread_specific<Workspace> workspaces;
-    std::atomic<std::size_t> done = 0;
+void render_tiles(const Job& job, int first, const TakeRows& take, const Watch& watch) {
+    TileRows tiles(job.options, first, take);
     std::mutex reporting;
+    const int threads = tbb::this_task_arena::max_concurrency();
     tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, tiles.size(), 1),
-        [&](const tbb::blocked_range<std::size_t>& range) {
-            Workspace& work = workspaces.local();
-            for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                if (watch.stop.stop_requested()) return;
-                render_tile(job, tiles[i], work, image);
-                const std::size_t count = ++done;
-                if (!watch.progress) continue;
-                const std::lock_guard lock(reporting);
-                watch.progress(double(count) / double(tiles.size()));
+        tbb::blocked_range<int>(0, threads, 1),
+        [&](const tbb::blocked_range<int>&) {
+            try {
+                work_on(job, watch, reporting, tiles);
+            } catch (...) {
+                tiles.stop();  // or the others would wait for this one
+                throw;
             }
         },
         tbb::simple_partitioner());
     if (watch.stop.stop_requested()) throw Error(Failure::interrupted, "", "interrupted");
+}
+
+void render_from(const NormalisedScene& normalised, const RenderOptions& options,
+                 const Variation& variation, int first, const TakeRows& take, const Watch& watch) {
+    const Scene& scene = normalised.scene;
+    tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+    arena.execute([&] {
+        World world(scene);
+        world.shadows = variation.shadows;
+        const View view = view_of(scene.cameras[scene.camera], options.width, options.height);
+        const Job job = {world, view, options, pixel_samples(options.samples, variation),
+                         interiors_at(world, view.location)};
+        if (watch.progress) watch.progress(0);
+        render_tiles(job, first, take, watch);
+    });
 }
 
 }  // namespace
@@ -248,19 +257,17 @@ Image render(const NormalisedScene& normalised, const RenderOptions& options, co
 
 Image render_variation(const NormalisedScene& normalised, const RenderOptions& options,
                        const Variation& variation, const Watch& watch) {
-    const Scene& scene = normalised.scene;
     Image image(options.width, options.height);
-    tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
-    arena.execute([&] {
-        World world(scene);
-        world.shadows = variation.shadows;
-        const View view = view_of(scene.cameras[scene.camera], options.width, options.height);
-        const Job job = {world, view, options, pixel_samples(options.samples, variation),
-                         interiors_at(world, view.location)};
-        if (watch.progress) watch.progress(0);
-        render_tiles(job, watch, image);
-    });
+    const auto take = [&](int first, const Image& rows) {
+        std::ranges::copy(rows.pixels, &image.at(0, first));
+    };
+    render_from(normalised, options, variation, 0, take, watch);
     return image;
+}
+
+void render_rows(const NormalisedScene& scene, const RenderOptions& options, int first,
+                 const TakeRows& take, const Watch& watch) {
+    render_from(scene, options, {}, first, take, watch);
 }
 
 }  // namespace penumbra

@@ -99,7 +99,7 @@ TEST_CASE("glTF textures, leave the plain colour where the image cannot be read"
           "the texture is left out, grey stands for its colours: none.png: no such file");
     CHECK(loss_of({{"uri", "../../etc/passwd"}}) ==
           "the texture is left out, grey stands for its colours: the uri '../../etc/passwd' leads "
-          "out of the model's folder");
+          "out of the model's folder (--allow-path DIR lets models read files below DIR)");
     CHECK_THAT(loss_of({{"uri", "data:image/png;base64,AAAA"}}),
                Catch::Matchers::StartsWith("the texture is left out, grey stands"));
 }

@@ -309,11 +309,12 @@ TEST_CASE("Mtl, nothing outside the model's folder is opened") {
               Lines{"model/m.obj:1: material library " + what,
                     "model/m.obj:8: material 'a' is not defined; it gets default values"});
     };
-    check("../secret.mtl", "'../secret.mtl' lies outside the model's folder");
-    check("..\\secret.mtl", "'..\\secret.mtl' lies outside the model's folder");
-    check("x/../../secret.mtl", "'x/../../secret.mtl' lies outside the model's folder");
-    check("/dev/zero", "'/dev/zero' lies outside the model's folder");
-    check("link.mtl", "'link.mtl' lies outside the model's folder");
+    const std::string hint = " (--allow-path DIR lets models read files below DIR)";
+    check("../secret.mtl", "'../secret.mtl' lies outside the model's folder" + hint);
+    check("..\\secret.mtl", "'..\\secret.mtl' lies outside the model's folder" + hint);
+    check("x/../../secret.mtl", "'x/../../secret.mtl' lies outside the model's folder" + hint);
+    check("/dev/zero", "'/dev/zero' lies outside the model's folder" + hint);
+    check("link.mtl", "'link.mtl' lies outside the model's folder" + hint);
     check(".", "is ignored: model/.: is a folder");
     check("none.mtl", "'none.mtl' is not found");
 }

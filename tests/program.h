@@ -6,6 +6,7 @@
 
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 
 #include <chrono>
@@ -22,6 +23,7 @@ using Words = std::vector<std::string>;
 struct Ended {
     int status = -1;  // of exit; -signal when killed
     std::string out = {}, err = {};
+    std::size_t peak = 0;  // bytes of memory
 };
 
 // A run of the program in `folder`, with standard output and error in files beside it.
@@ -51,9 +53,11 @@ struct Running {
 
     Ended wait() {
         int status = 0;
-        waitpid(pid, &status, 0);
+        rusage usage{};
+        wait4(pid, &status, 0, &usage);
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status),
-                test::read(logs / "out"), test::read(logs / "err")};
+                test::read(logs / "out"), test::read(logs / "err"),
+                std::size_t(usage.ru_maxrss) * 1024};
     }
 
     // Before this a signal would end the program at once, as any other.

@@ -1,8 +1,9 @@
 #include "markup.h"
 
+#include "plain_text.h"
+
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string_view>
@@ -11,26 +12,6 @@ namespace penumbra::markup {
 namespace {
 
 constexpr std::string_view replacement = "\xef\xbf\xbd";  // U+FFFD
-
-// Length of the valid character at the start of `rest` (RFC 3629), 0 if there is none.
-std::size_t character(std::string_view rest, std::uint32_t& code) {
-    const auto byte = [&](std::size_t i) { return std::uint32_t(std::uint8_t(rest[i])); };
-    const std::uint32_t lead = byte(0);
-    const std::size_t length = lead < 0x80            ? 1
-                               : lead >> 5 == 0b110   ? 2
-                               : lead >> 4 == 0b1110  ? 3
-                               : lead >> 3 == 0b11110 ? 4
-                                                      : 0;
-    if (length == 0 || length > rest.size()) return 0;
-    code = length == 1 ? lead : lead & (0x7fU >> length);
-    for (std::size_t i = 1; i < length; ++i) {
-        if (byte(i) >> 6 != 0b10) return 0;
-        code = code << 6 | (byte(i) & 0x3f);
-    }
-    constexpr std::array<std::uint32_t, 5> least = {0, 0, 0x80, 0x800, 0x10000};
-    const bool surrogate = code >= 0xd800 && code < 0xe000;
-    return code < least[length] || code > 0x10ffff || surrogate ? 0 : length;
-}
 
 // Char of XML 1.0, section 2.2, without the control characters that it merely discourages.
 bool allowed(std::uint32_t code) {
@@ -44,7 +25,7 @@ std::string clean(const std::string& text) {
     std::string result;
     for (std::string_view rest = text; !rest.empty();) {
         std::uint32_t code = 0;
-        const std::size_t length = character(rest, code);
+        const std::size_t length = utf8_character(rest, code);
         result += length > 0 && allowed(code) ? rest.substr(0, length) : replacement;
         rest.remove_prefix(length > 0 ? length : 1);
     }

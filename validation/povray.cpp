@@ -1,8 +1,10 @@
 // Runs POV-Ray and reads its pixels.
 #include "file.h"
+#include "memory.h"
 #include "process.h"
 #include "render_state.h"
 
+#include "penumbra/limits.h"
 #include "penumbra/validation.h"
 
 #include <fcntl.h>
@@ -245,6 +247,14 @@ Error first_error(const std::string& log, const fs::path& ini) {
 
 [[noreturn]] void fail(const Finished& finished, const std::string& log, const fs::path& ini,
                        const Command& command) {
+    const bool stopped =
+        finished.how == Finished::How::stopped || finished.how == Finished::How::timed_out;
+    if (finished.out_of_memory && !stopped)
+        throw Error(
+            Failure::povray, ini.string(),
+            fmt::format("POV-Ray needs more than the {} of memory that it may use (allow it "
+                        "more with --max-memory)",
+                        memory_text(command.memory)));
     switch (finished.how) {
     case Finished::How::stopped: throw Error(Failure::interrupted, "", "interrupted");
     case Finished::How::timed_out:
@@ -294,6 +304,7 @@ PovrayRun run_povray(const fs::path& ini, int width, int height, const PovrayOpt
     if (options.threads > 0) command.argv.push_back(fmt::format("+WT{}", options.threads));
     command.folder = fs::absolute(ini).parent_path();
     command.timeout = options.timeout;
+    command.memory = memory_limit();
     command.stop = watch.stop;
     const double full = render_state_size(width, height);
     if (watch.progress)

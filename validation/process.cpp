@@ -3,16 +3,18 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <optional>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 extern char** environ;
 
@@ -29,42 +31,6 @@ void check(int error, const char* what) {
     if (error != 0) throw std::system_error(error, std::generic_category(), what);
 }
 
-// What posix_spawn() needs, released at the end.
-struct SpawnPlan {
-    posix_spawn_file_actions_t actions{};
-    posix_spawnattr_t attributes{};
-    SpawnPlan() {
-        check(posix_spawn_file_actions_init(&actions), "posix_spawn");
-        check(posix_spawnattr_init(&attributes), "posix_spawn");
-    }
-    ~SpawnPlan() {
-        posix_spawn_file_actions_destroy(&actions);
-        posix_spawnattr_destroy(&attributes);
-    }
-    SpawnPlan(const SpawnPlan&) = delete;
-    SpawnPlan& operator=(const SpawnPlan&) = delete;
-};
-
-// A group of its own, so that a terminal's Ctrl-C reaches us alone and we decide; no blocked or
-// ignored signals are handed down.
-void plan(SpawnPlan& plan, const Command& command, int output) {
-    check(posix_spawn_file_actions_addopen(&plan.actions, 0, "/dev/null", O_RDONLY, 0),
-          "/dev/null");
-    check(posix_spawn_file_actions_adddup2(&plan.actions, output, 1), "pipe");
-    check(posix_spawn_file_actions_adddup2(&plan.actions, output, 2), "pipe");
-    if (!command.folder.empty())
-        check(posix_spawn_file_actions_addchdir_np(&plan.actions, command.folder.c_str()),
-              "working folder");
-    sigset_t none, all;
-    sigemptyset(&none);
-    sigfillset(&all);
-    posix_spawnattr_setsigmask(&plan.attributes, &none);
-    posix_spawnattr_setsigdefault(&plan.attributes, &all);
-    posix_spawnattr_setpgroup(&plan.attributes, 0);
-    const int flags = POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF;
-    check(posix_spawnattr_setflags(&plan.attributes, short(flags)), "posix_spawn");
-}
-
 struct Child {
     pid_t id = -1;
     int output = -1;  ///< the pipe's reading end, not blocking
@@ -73,26 +39,108 @@ struct Child {
     }
 };
 
-void start(Child& child, const Command& command) {
-    int ends[2];
-    check(pipe2(ends, O_CLOEXEC) == 0 ? 0 : errno, "pipe");
-    child.output = ends[0];
-    fcntl(child.output, F_SETFL, O_NONBLOCK);
-    std::vector<char*> argv;
-    for (const std::string& word : command.argv) argv.push_back(const_cast<char*>(word.c_str()));
-    argv.push_back(nullptr);
-    int error = 0;
-    try {
-        SpawnPlan how;
-        plan(how, command, ends[1]);
-        error =
-            posix_spawn(&child.id, argv[0], &how.actions, &how.attributes, argv.data(), environ);
-    } catch (...) {
-        close(ends[1]);
-        throw;
+// What a new process needs to become the program.
+struct Launch {
+    std::vector<char*> argv = {};
+    const char* folder = nullptr;
+    int output = -1, failure = -1;  // writing ends of pipes; of the second: errno of what failed
+    pid_t parent = -1;
+    std::optional<rlim_t> memory = {};
+    rlim_t seconds = RLIM_INFINITY;
+};
+
+rlim_t processors() { return rlim_t(std::max(sysconf(_SC_NPROCESSORS_ONLN), 1L)); }
+
+Launch make_launch(const Command& command, int output, int failure) {
+    Launch launch = {.output = output, .failure = failure, .parent = getpid()};
+    for (const std::string& word : command.argv)
+        launch.argv.push_back(const_cast<char*>(word.c_str()));
+    launch.argv.push_back(nullptr);
+    if (!command.folder.empty()) launch.folder = command.folder.c_str();
+    // RLIMIT_DATA counts threads' stacks, filled or not.
+    constexpr std::size_t stacks = std::size_t(64) << 20, stack = std::size_t(16) << 20;
+    if (command.memory != 0) launch.memory = rlim_t(command.memory) + stacks + stack * processors();
+    using std::chrono::seconds;
+    launch.seconds = rlim_t(std::chrono::ceil<seconds>(command.timeout).count() + 1) * processors();
+    return launch;
+}
+
+void lower(decltype(RLIMIT_DATA) resource, std::optional<rlim_t> most) {
+    rlimit bound{};
+    if (getrlimit(resource, &bound) != 0) return;
+    // Ours, if we have one, is not the program's.
+    bound.rlim_cur = most ? std::min(*most, bound.rlim_max) : bound.rlim_max;
+    setrlimit(resource, &bound);
+}
+
+bool connect(const Launch& launch) {
+    const int nothing = open("/dev/null", O_RDONLY);
+    return nothing >= 0 && dup2(nothing, 0) >= 0 && dup2(launch.output, 1) >= 0 &&
+           dup2(launch.output, 2) >= 0 && (nothing == 0 || close(nothing) == 0) &&
+           (launch.folder == nullptr || chdir(launch.folder) == 0);
+}
+
+// A group of its own, so that a terminal's Ctrl-C reaches us alone and we decide; no blocked or
+// ignored signals are handed down. Behind fork() only what is safe in a signal handler may be
+// called: other threads may have held any lock.
+[[noreturn]] void become(const Launch& launch) {
+    setpgid(0, 0);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != launch.parent) _exit(127);  // it has ended meanwhile
+    lower(RLIMIT_DATA, launch.memory);
+    lower(RLIMIT_CPU, launch.seconds);
+    if (connect(launch)) {
+        struct sigaction plain {};
+        plain.sa_handler = SIG_DFL;
+        for (int number = 1; number < NSIG; ++number) sigaction(number, &plain, nullptr);
+        sigset_t none;
+        sigemptyset(&none);
+        sigprocmask(SIG_SETMASK, &none, nullptr);
+        execve(launch.argv[0], launch.argv.data(), environ);
     }
-    close(ends[1]);
-    check(error, command.argv[0].c_str());
+    const int error = errno;
+    [[maybe_unused]] const ssize_t written = write(launch.failure, &error, sizeof error);
+    _exit(127);
+}
+
+// With all signals blocked, for their handlers are ours until the program runs.
+pid_t fork_to(const Launch& launch) {
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    const pid_t child = fork();
+    if (child == 0) become(launch);
+    const int error = errno;
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    errno = error;
+    return child;
+}
+
+struct Pipe {
+    int ends[2] = {-1, -1};
+    Pipe() { check(pipe2(ends, O_CLOEXEC) == 0 ? 0 : errno, "pipe"); }
+    ~Pipe() {
+        for (const int end : ends)
+            if (end >= 0) close(end);
+    }
+    Pipe(const Pipe&) = delete;
+    Pipe& operator=(const Pipe&) = delete;
+};
+
+void start(Child& child, const Command& command) {
+    Pipe output, failure;
+    const Launch launch = make_launch(command, output.ends[1], failure.ends[1]);
+    child.id = fork_to(launch);
+    check(child.id < 0 ? errno : 0, command.argv[0].c_str());
+    close(std::exchange(failure.ends[1], -1));
+    int error = 0;
+    ssize_t size = 0;  // nothing once the program runs, which closes its end
+    while ((size = read(failure.ends[0], &error, sizeof error)) < 0 && errno == EINTR) {
+    }
+    if (size != 0) waitpid(child.id, nullptr, 0);
+    check(size != 0 ? error : 0, command.argv[0].c_str());
+    child.output = std::exchange(output.ends[0], -1);
+    fcntl(child.output, F_SETFL, O_NONBLOCK);
 }
 
 // Takes what is in the pipe. Without this a talkative child would wait for a reader for ever.
@@ -112,6 +160,18 @@ bool has_ended(pid_t child) {
     siginfo_t info{};
     if (waitid(P_PID, id_t(child), &info, WEXITED | WNOHANG | WNOWAIT) != 0) return errno != EINTR;
     return info.si_pid != 0;
+}
+
+// C++ programs say so of an exception that they do not catch; others are seen to have taken much.
+bool is_out_of_memory(const Command& command, const Finished& finished, const rusage& usage) {
+    const bool failed = finished.how == Finished::How::signalled || finished.code != 0;
+    if (command.memory == 0 || !failed) return false;
+    const auto said = [&](const char* words) {
+        return finished.output.find(words) != std::string::npos;
+    };
+    return said("std::bad_alloc") || said("ut of memory") || said("emory exhausted") ||
+           said("Cannot allocate memory") ||
+           std::size_t(usage.ru_maxrss) * 1024 >= command.memory / 10 * 9;
 }
 
 double seconds_of(const timeval& time) { return double(time.tv_sec) + double(time.tv_usec) * 1e-6; }
@@ -161,6 +221,8 @@ Finished run(const Command& command) {
         result.how = WIFSIGNALED(status) ? Finished::How::signalled : Finished::How::exited;
         result.code = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
         result.cpu_seconds = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
+        drain(child.output, result.output);
+        result.out_of_memory = is_out_of_memory(command, result, usage);
     };
     try {
         cut_short = attend(child, command, result.output);
@@ -169,7 +231,6 @@ Finished run(const Command& command) {
         throw;
     }
     reap();
-    drain(child.output, result.output);
     if (cut_short) result.how = *cut_short;
     result.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     return result;

@@ -3,7 +3,7 @@
 
 #include "markup.h"
 #include "metrics.h"
-#include "png_codec.h"
+#include "png_encoder.h"
 #include "report_style.h"
 
 #include <fmt/format.h>

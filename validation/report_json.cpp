@@ -1,5 +1,6 @@
 // Cases <-> the documented JSON document.
 #include "markup.h"
+#include "plain_text.h"
 #include "report.h"
 
 #include "penumbra/error.h"
@@ -138,7 +139,7 @@ std::string report_json(const std::vector<Case>& cases) {
     document["tool"] = {{"name", "penumbra"}, {"version", PENUMBRA_VERSION}};
     document["cases"] = Json::array();
     for (const Case& one : cases) document["cases"].push_back(json_case(one));
-    return document.dump(2) + "\n";
+    return plain_json(document.dump(2)) + "\n";
 }
 
 std::vector<Case> cases_of_json(const std::string& text) {

@@ -3,34 +3,78 @@
 
 #include <draco/compression/decode.h>
 
+#include <algorithm>
 #include <cstring>
 #include <exception>
 #include <memory>
-#include <optional>
 
 namespace penumbra {
 namespace {
 
-// The sizes that the data begin with, before anything is allocated for them: see the bitstream
-// specification of Draco 2.2, sections "Header", "Sequential Connectivity" and "EdgeBreaker
-// Connectivity". None where metadata come first.
-std::optional<std::uint64_t> declared_facets(std::span<const std::byte> data) {
-    constexpr std::size_t header = 11;
-    constexpr auto metadata = std::byte(0x80), edge_breaker = std::byte(1);
-    if (data.size() < header || (data[10] & metadata) != std::byte(0)) return std::nullopt;
-    const bool edges = data[8] == edge_breaker;
-    std::size_t at = edges ? header + 1 : header;
-    const auto varint = [&] {
+// What the data begin with, read before anything is allocated for it: see the bitstream
+// specification of Draco 2.2. Behind the end there are zeros.
+struct Beginning {
+    std::span<const std::byte> data;
+    std::size_t at = 0;
+
+    std::uint64_t byte() { return at < data.size() ? std::uint64_t(data[at++]) : 0; }
+    std::uint64_t varint() {
         std::uint64_t value = 0;
         for (int shift = 0; at < data.size() && shift < 64; shift += 7) {
-            const auto byte = std::uint64_t(data[at++]);
-            value |= (byte & 0x7f) << shift;
-            if (byte < 0x80) break;
+            const std::uint64_t part = byte();
+            value |= (part & 0x7f) << shift;
+            if (part < 0x80) break;
         }
         return value;
-    };
-    if (edges) varint();  // number of vertices
-    return varint();
+    }
+    void skip(std::uint64_t count) {
+        at =
+            count < data.size() - std::min(at, data.size()) ? at + std::size_t(count) : data.size();
+    }
+    bool ended() const { return at >= data.size(); }
+
+    // Section "Metadata": names and values, then metadata with names of their own.
+    void skip_metadata() {
+        std::uint64_t open = 1;
+        for (bool first = true; open > 0 && !ended(); first = false, --open) {
+            if (!first) skip(byte());
+            for (std::uint64_t entries = varint(); entries > 0 && !ended(); --entries) {
+                skip(byte());
+                skip(varint());
+            }
+            open += varint();
+        }
+    }
+};
+
+// Sections "Header", "Sequential Connectivity" and "EdgeBreaker Connectivity".
+std::uint64_t declared_facets(std::span<const std::byte> data) {
+    constexpr std::size_t header = 11;
+    constexpr auto metadata = std::byte(0x80), edge_breaker = std::byte(1);
+    if (data.size() < header) return 0;
+    Beginning rest = {data, header};
+    if ((data[10] & metadata) != std::byte(0)) {
+        for (std::uint64_t attributes = rest.varint(); attributes > 0 && !rest.ended();
+             --attributes) {
+            rest.varint();  // its id
+            rest.skip_metadata();
+        }
+        rest.skip_metadata();
+    }
+    if (data[8] == edge_breaker) {
+        rest.byte();    // how it was traversed
+        rest.varint();  // number of vertices
+    }
+    return rest.varint();
+}
+
+// Of a byte. The codec gets a facet to less than a bit only where it repeats; a small file should
+// not be able to ask for much memory.
+constexpr std::size_t most_facets = 4096;
+
+std::uint64_t plausible_facets(std::span<const std::byte> data) {
+    const std::uint64_t facets = declared_facets(data);
+    return facets > data.size() * most_facets ? 0 : facets;
 }
 
 // The values of all points as numbers of type T.
@@ -84,11 +128,8 @@ DracoMesh failed(std::string problem) {
 }
 
 DracoMesh decode_mesh(std::span<const std::byte> data, std::span<const DracoWish> wishes) {
-    // The codec gets a facet to less than a bit only where it repeats; a small file should not be
-    // able to ask for much memory.
-    constexpr std::size_t best = 4096;
-    if (const auto facets = declared_facets(data); facets && *facets > data.size() * best)
-        return failed("it claims " + std::to_string(*facets) + " facets in " +
+    if (const std::uint64_t facets = declared_facets(data); facets > data.size() * most_facets)
+        return failed("it claims " + std::to_string(facets) + " facets in " +
                       std::to_string(data.size()) + " bytes");
 
     draco::DecoderBuffer source;
@@ -127,8 +168,8 @@ DracoMesh decode(std::span<const std::byte> data, std::span<const DracoWish> wis
 }  // namespace
 }  // namespace penumbra
 
-extern "C" __attribute__((visibility("default"))) const penumbra::DracoModule*
-penumbra_draco_module() {
-    static const penumbra::DracoModule module = {penumbra::draco_module_abi, penumbra::decode};
+extern "C" __attribute__((visibility("default"))) const void* penumbra_draco_module() {
+    static const penumbra::DracoModule module = {penumbra::draco_module_abi, penumbra::decode,
+                                                 penumbra::plausible_facets};
     return &module;
 }

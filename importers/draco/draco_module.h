@@ -33,10 +33,13 @@ struct DracoMesh {
 struct DracoModule {
     int abi;  ///< draco_module_abi of the build that made the module
     DracoMesh (*decode)(std::span<const std::byte> data, std::span<const DracoWish> wishes);
+    /// How many facets the data say they have, 0 where decode() refuses so many; nothing is
+    /// decompressed for it.
+    std::uint64_t (*facets)(std::span<const std::byte> data);
 };
 
 /// Changes with every change of DracoModule or of the types it uses.
-inline constexpr int draco_module_abi = 1;
+inline constexpr int draco_module_abi = 2;
 
 /// The one symbol of the module, of type const DracoModule*().
 inline constexpr const char* draco_module_entry = "penumbra_draco_module";

@@ -1,10 +1,10 @@
 #include "arguments.h"
 
 #include "descriptions.h"
+#include "environment.h"
 #include "option_reader.h"
 
 #include <cmath>
-#include <cstdlib>
 
 namespace penumbra::cli {
 namespace {
@@ -91,6 +91,12 @@ class Reader : public OptionReader {
         if (command == Command::validate) declare_povray();
         if (command == Command::validate || command == Command::compare) declare_limits();
         if (command == Command::calibrate) declare_calibration();
+        group = "Resources";
+        value("--max-memory", "SIZE",
+              "Memory to use, such as 2G (PENUMBRA_MAX_MEMORY, else 3/4 of what is free)",
+              [this](const std::string& text) {
+                  arguments.max_memory = read_memory("--max-memory", text);
+              });
         declare_console();
     }
 
@@ -118,6 +124,13 @@ class Reader : public OptionReader {
             value("--depth", "8|16", "Bits per channel of a .png or .tif (8)",
                   [this](const std::string& text) {
                       arguments.bits = read_choice("--depth", text, {"8", "16"}) == 0 ? 8 : 16;
+                  });
+            flag("--resume", arguments.resume,
+                 "Go on from the checkpoint of an interrupted run, FILE.checkpoint");
+            value("--checkpoint", "SECONDS", "Time between checkpoints; 0 for none (5)",
+                  [this](const std::string& text) {
+                      arguments.checkpoint_interval =
+                          read_number("--checkpoint", text, not_negative);
                   });
             break;
         case Command::export_scene:
@@ -152,6 +165,10 @@ class Reader : public OptionReader {
         value("--sidecar", "FILE", "Lay this sidecar over the inputs",
               [this](const std::string& text) {
                   arguments.load.sidecar = not_empty("--sidecar", text);
+              });
+        value("--allow-path", "DIR", "Let models read files below this folder, too",
+              [this](const std::string& text) {
+                  arguments.load.model.allowed_paths.emplace_back(not_empty("--allow-path", text));
               });
         value("--variant", "NAME", "Use this variant of a glTF model's materials",
               [this](const std::string& text) {
@@ -330,17 +347,6 @@ class Reader : public OptionReader {
     }
 };
 
-int threads_of_environment() {
-    const char* const text = std::getenv("PENUMBRA_THREADS");
-    return text == nullptr || *text == 0 ? 0 : read_integer("PENUMBRA_THREADS", text, {0, 1024});
-}
-
-std::string without_double_gaps(std::string text) {
-    for (auto at = text.find("\n\n\n"); at != std::string::npos; at = text.find("\n\n\n", at))
-        text.erase(at, 1);
-    return text;
-}
-
 }  // namespace
 
 Parsed parse(int argc, const char* const* argv) {
@@ -378,7 +384,7 @@ Parsed parse(int argc, const char* const* argv) {
 
     const auto reader = chosen();
     Arguments& arguments = results[std::size_t(reader - readers.begin())];
-    arguments.threads = threads_of_environment();
+    apply_environment(arguments);
     (*reader)->apply();
     (*reader)->finish();
     arguments.words = {"penumbra"};

@@ -41,7 +41,10 @@ struct Arguments {
     std::optional<std::filesystem::path> report = {};  ///< folder
     PovStyle pov_style = PovStyle::standalone;
     int bits = 8;     ///< of an integer picture's channels
+    bool resume = false;
+    double checkpoint_interval = 5;  ///< seconds; 0: none
     int threads = 0;  ///< 0: as many as the machine has
+    std::size_t max_memory = 0;  ///< bytes; 0: three quarters of what is free
 
     bool each = false;   ///< validate: every input is a scene of its own
     bool fresh = false;  ///< validate: nothing is taken from an earlier run

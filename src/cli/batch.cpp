@@ -1,6 +1,7 @@
 #include "batch.h"
 
 #include "figures.h"
+#include "memory_bound.h"
 
 #include <fmt/format.h>
 
@@ -36,7 +37,7 @@ std::vector<Outcome> outcomes_of(const Job& job, bool alone, bool again) {
                          error.what());
     } catch (const std::bad_alloc&) {
         failure = std::current_exception();
-        status = note_failure(cases[0], exit_internal, "internal error: not enough memory");
+        status = note_failure(cases[0], exit_input, out_of_memory());
     } catch (const std::exception& error) {
         failure = std::current_exception();
         status =
@@ -147,7 +148,9 @@ void print_cases(const Context& context, const std::vector<Case>& cases,
 }
 
 std::string Names::unused(const std::string& wanted) {
-    const std::string first = wanted.empty() ? "scene" : wanted;
+    std::string first = wanted.empty() ? "scene" : wanted;
+    if (first.starts_with('.'))
+        first = fmt::format("_{}", first);  // "...glb" would give another folder
     std::string name = first;
     for (int i = 2; !used.insert(name).second; ++i) name = fmt::format("{}-{}", first, i);
     return name;

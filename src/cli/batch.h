@@ -45,7 +45,8 @@ std::vector<Case> cases_of(std::vector<Outcome> outcomes);
 void print_cases(const Context& context, const std::vector<Case>& cases,
                  const std::optional<std::filesystem::path>& report);
 
-/// "chair", "chair-2", ... for pictures and scenes of the same name: names of cases and folders.
+/// "chair", "chair-2", ... for pictures and scenes of the same name: names of cases and of folders
+/// that are no others' names and not hidden.
 class Names {
   public:
     std::string unused(const std::string& wanted);

@@ -1,5 +1,7 @@
 #include "console.h"
 
+#include "plain_text.h"
+
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -23,13 +25,6 @@ constexpr const char* yellow = "\033[1;33m";
 constexpr const char* faint = "\033[2m";
 constexpr const char* normal = "\033[0m";
 constexpr const char* erase_line = "\r\033[K";
-
-// What files say must not move the cursor.
-std::string one_line(std::string text) {
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-    return text;
-}
 
 bool environment_wants_color() {
     const char* const no_color = std::getenv("NO_COLOR");
@@ -114,7 +109,8 @@ void Console::losses(const Losses& list) {
                 (count > 1 ? fmt::format(" (and {} more)", count - 1) : ""));
 }
 
-void Console::result(const std::string& text) {
+void Console::result(const std::string& made) {
+    const std::string text = plain_lines(made);
     const std::lock_guard lock(mutex);
     clear_bar();
     errno = 0;
@@ -136,7 +132,7 @@ std::function<void(double)> Console::progress(const std::string& work, double un
                                               const std::string& unit) {
     if (!terminal || options.quiet) return {};
     auto bar = std::make_shared<Bar>();
-    bar->work = work;
+    bar->work = one_line(work);
     bar->unit = unit;
     bar->units = units;
     return [this, bar](double done) { draw(*bar, done); };

@@ -38,8 +38,8 @@ class Console {
     void detail(const std::string& text);   ///< only with --verbose
     void losses(const Losses& list);        ///< a warning each; similar ones together
 
-    /// Writes to standard output at once. Throws Error (output) when that fails.
-    void result(const std::string& text);
+    /// Writes lines to standard output at once. Throws Error (output) when that fails.
+    void result(const std::string& made);
 
     bool quiet() const { return options.quiet; }
 

@@ -1,3 +1,4 @@
+#include "plain_text.h"
 #include "steps.h"
 #include "values.h"
 
@@ -38,7 +39,7 @@ int export_scene(const Context& context) {
             json_text({{"version", 1}, {"files", files}, {"losses", losses_json(losses)}}));
     } else if (!arguments.quiet) {
         std::string text;
-        for (const auto& file : exported.files) text += file.string() + '\n';
+        for (const auto& file : exported.files) text += one_line(file.string()) + '\n';
         context.console.result(text);
     }
     return exit_success;

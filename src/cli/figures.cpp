@@ -1,6 +1,7 @@
 #include "figures.h"
 
 #include "commands.h"
+#include "plain_text.h"
 
 #include <fmt/format.h>
 
@@ -28,8 +29,9 @@ std::string metric_line(const Metric& metric) {
 
 std::string figures(const Case& result) {
     const Comparison& comparison = result.comparison;
-    std::string text = fmt::format("{}: {}\n", result.name, to_string(comparison.verdict));
-    if (!result.message.empty()) text += fmt::format("  {}\n", result.message);
+    std::string text =
+        fmt::format("{}: {}\n", one_line(result.name), to_string(comparison.verdict));
+    if (!result.message.empty()) text += fmt::format("  {}\n", one_line(result.message));
     for (const Metric& metric : comparison.metrics)
         if (metric.limit || !std::isnan(metric.value)) text += metric_line(metric);
     if (!comparison.metrics.empty() && comparison.verdict != Verdict::not_comparable)
@@ -37,25 +39,26 @@ std::string figures(const Case& result) {
                             comparison.worst.y, result.test_name, color_text(comparison.worst.test),
                             result.reference_name, color_text(comparison.worst.reference));
     for (const std::string& sentence : comparison.diagnosis)
-        text += fmt::format("  {}\n", sentence);
+        text += fmt::format("  {}\n", one_line(sentence));
     return text;
 }
 
 std::string overview(const std::vector<Case>& cases) {
     std::size_t width = 0;
-    for (const Case& result : cases) width = std::max(width, result.name.size());
+    for (const Case& result : cases) width = std::max(width, one_line(result.name).size());
     std::string text;
     std::map<std::string, int> totals;
     for (const Case& result : cases) {
         const Comparison& comparison = result.comparison;
         ++totals[to_string(comparison.verdict)];
-        text += fmt::format("{:<14} {:<{}}", to_string(comparison.verdict), result.name, width);
+        text += fmt::format("{:<14} {:<{}}", to_string(comparison.verdict), one_line(result.name),
+                            width);
         if (result.message.empty())
             text +=
                 fmt::format("  parity {:.6f}  ssim {:.6f}  flip {:.6f}", comparison.value("parity"),
                             comparison.value("ssim"), comparison.value("flip"));
         else
-            text += "  " + result.message;
+            text += "  " + one_line(result.message);
         text += '\n';
     }
     text += fmt::format("{} scene{}:", cases.size(), cases.size() == 1 ? "" : "s");

@@ -1,4 +1,4 @@
-#include "interruption.h"
+#include "plain_text.h"
 #include "steps.h"
 
 #include "penumbra/exporters.h"
@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <set>
 #include <variant>
 
@@ -42,24 +41,10 @@ struct Report {
     Totals totals = {};
 };
 
-struct Finally {
-    ~Finally() { remove_leftover(); }
-};
-
-// Only an export tells what POV-Ray cannot say; this one is thrown away.
-Losses export_losses(Scene scene, const RenderOptions& options) {
-    std::string name = (fs::temp_directory_path() / "penumbra-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr)
-        throw Error(Failure::output, name, "no temporary folder can be made");
-    set_leftover(name);
-    const Finally removal;
-    const NormalisedScene normal = normalise(std::move(scene), options);
-    return write_pov(normal, options, fs::path(name) / "scene.pov").losses;
-}
-
 // Says whether `loss` leaves something out, or does it in another way.
 bool is_dropped(const Loss& loss) {
-    constexpr std::array words = {"ignored", "left out", "dropped", "skipped", "not found"};
+    constexpr std::array words = {"ignored", "left out",  "dropped",
+                                  "skipped", "not found", "outside the model's folder"};
     return std::any_of(words.begin(), words.end(),
                        [&](const char* word) { return loss.what.find(word) != std::string::npos; });
 }
@@ -122,7 +107,7 @@ std::string names_of(const Things& things) {
     std::string text;
     for (std::size_t i = 0; i < std::min(most, things.size()); ++i)
         text += (text.empty() ? "" : ", ") +
-                (things[i].name.empty() ? std::string("(no name)") : things[i].name);
+                (things[i].name.empty() ? std::string("(no name)") : one_line(things[i].name));
     return things.size() > most ? text + ", ..." : text;
 }
 
@@ -156,7 +141,7 @@ std::string contents(const Report& report) {
     const Scene& scene = report.imported.scene;
     std::string text;
     for (const ModelInfo& model : report.imported.models)
-        text += fmt::format("{} ({}{})\n", model.file, model.format,
+        text += fmt::format("{} ({}{})\n", one_line(model.file), model.format,
                             model.nodes > 0 ? ", " + counted(model.nodes, "node") : "");
     if (!report.box.empty())
         text += fmt::format("{:<11}({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n",
@@ -177,7 +162,8 @@ std::string contents(const Report& report) {
                             report.imported.auto_exposure ? ", metered" : "");
     if (report.totals.animations > 0) text += count_line("animations", report.totals.animations);
     if (!report.totals.extensions.empty())
-        text += fmt::format("extensions {}\n", fmt::join(report.totals.extensions, ", "));
+        text += "extensions " +
+                one_line(fmt::format("{}", fmt::join(report.totals.extensions, ", "))) + "\n";
     return text;
 }
 
@@ -186,7 +172,7 @@ std::string fidelity(const Losses& losses) {
     std::string approximate, dropped;
     for (const auto& [loss, count] : equal_losses(losses))
         (is_dropped(loss) ? dropped : approximate) +=
-            fmt::format("  {}: {}{}\n", loss.place, loss.what,
+            fmt::format("  {}{}\n", one_line(loss.place + ": " + loss.what),
                         count > 1 ? fmt::format(" ({} times)", count) : "");
     std::string text;
     if (!approximate.empty()) text += "approximate:\n" + approximate;
@@ -210,7 +196,8 @@ int info(const Context& context) {
     report.losses = report.imported.losses;
     const Losses settled = settle_normal_maps(scene, arguments.load.normal_maps);
     report.losses.insert(report.losses.end(), settled.begin(), settled.end());
-    const Losses exported = export_losses(scene, report.imported.render);
+    const RenderOptions& options = report.imported.render;
+    const Losses exported = pov_losses(normalise(scene, options), options);
     report.losses.insert(report.losses.end(), exported.begin(), exported.end());
 
     context.console.result(arguments.json ? json_text(document(arguments, report))

@@ -1,6 +1,7 @@
 // The program: command line -> one command -> exit status.
 #include "commands.h"
 #include "interruption.h"
+#include "memory_bound.h"
 
 #include "penumbra/image.h"
 
@@ -51,7 +52,8 @@ int guarded(Console& console, Work work) {
         console.error(error.what());
         return exit_status(error.failure);
     } catch (const std::bad_alloc&) {
-        console.internal_error("not enough memory");
+        console.error(out_of_memory());
+        return exit_input;
     } catch (const std::exception& error) {
         console.internal_error(error.what());
     } catch (...) {
@@ -70,6 +72,7 @@ int program(int argc, const char* const* argv) {
     });
     if (!parsed.arguments) return status;
     const Arguments& arguments = *parsed.arguments;
+    bound_memory(arguments.max_memory);
     Console console({arguments.quiet, arguments.verbose, arguments.color});
     const auto whole = [&](Progress* progress) {
         const int ending = guarded(console, [&] { return run(arguments, console, progress); });

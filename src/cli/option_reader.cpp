@@ -4,6 +4,12 @@
 
 namespace penumbra::cli {
 
+std::string without_double_gaps(std::string text) {
+    for (auto at = text.find("\n\n\n"); at != std::string::npos; at = text.find("\n\n\n", at))
+        text.erase(at, 1);
+    return text;
+}
+
 void refuse(const CLI::App& program, const CLI::ParseError& error,
             const std::vector<std::string>& options) {
     const auto chosen = program.get_subcommands();

@@ -90,6 +90,9 @@ class OptionReader {
     std::vector<std::unique_ptr<std::vector<std::string>>> values;
 };
 
+/// `text` without two blank lines in a row.
+std::string without_double_gaps(std::string text);
+
 /// Throws CLI11's own findings as one clear sentence; `options` are those of the chosen command.
 [[noreturn]] void refuse(const CLI::App& program, const CLI::ParseError& error,
                          const std::vector<std::string>& options);

@@ -1,6 +1,8 @@
+#include "case_cache.h"
 #include "steps.h"
 
 #include "penumbra/image.h"
+#include "penumbra/render_file.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -34,24 +36,33 @@ int render(const Context& context) {
     const NormalisedScene scene = normalise(std::move(imported.scene), options);
     const double import_seconds = import_time.seconds();
 
-    const auto& [image, build_seconds, render_seconds] =
-        render_scene(context, scene, options, "render");
-    if (context.stop.stop_requested()) throw Error(Failure::interrupted, "", "interrupted");
-    save_image(output, image, {arguments.bits});
+    const RenderedFile done = render_file(
+        scene, options, output,
+        {.save = {arguments.bits},
+         .checkpoint_interval = arguments.checkpoint_interval,
+         .resume = arguments.resume,
+         .program = program_key()},
+        {context.console.progress("render", sample_count(options), " samples"), context.stop});
+    context.console.clear_progress();
+    if (!done.warning.empty()) context.console.warning(done.warning);
+    if (done.resumed_rows > 0)
+        context.console.detail(fmt::format("{} of {} rows are from the checkpoint",
+                                           done.resumed_rows, options.height));
 
     if (arguments.json) {
-        context.console.result(json_text(
-            {{"version", 1},
-             {"file", output.string()},
-             {"width", image.width},
-             {"height", image.height},
-             {"seconds",
-              {{"import", import_seconds}, {"build", build_seconds}, {"render", render_seconds}}},
-             {"losses", losses_json(imported.losses)}}));
+        context.console.result(json_text({{"version", 1},
+                                          {"file", output.string()},
+                                          {"width", options.width},
+                                          {"height", options.height},
+                                          {"seconds",
+                                           {{"import", import_seconds},
+                                            {"build", done.build_seconds},
+                                            {"render", done.render_seconds}}},
+                                          {"losses", losses_json(imported.losses)}}));
     } else if (!arguments.quiet) {
         context.console.result(fmt::format("{}: {} x {} pixels in {:.2f} s\n", output.string(),
-                                           image.width, image.height,
-                                           build_seconds + render_seconds));
+                                           options.width, options.height,
+                                           done.build_seconds + done.render_seconds));
     }
     return exit_success;
 }

@@ -1,7 +1,10 @@
 #include "renderer.h"
 
+#include "src/memory.h"
 #include "validation/process.h"
 #include "values.h"
+
+#include "penumbra/limits.h"
 
 #include <fmt/format.h>
 
@@ -63,6 +66,13 @@ std::string last_line(const std::string& text) {
                        const RendererInput& input) {
     const std::string said = last_line(finished.output);
     const std::string why = said.empty() ? "" : fmt::format(": {}", said);
+    const bool stopped =
+        finished.how == Finished::How::stopped || finished.how == Finished::How::timed_out;
+    if (finished.out_of_memory && !stopped)
+        throw Error(Failure::povray, renderer.name,
+                    fmt::format("needs more than the {} of memory that it may use (allow it more "
+                                "with --max-memory){}",
+                                memory_text(memory_limit()), why));
     switch (finished.how) {
     case Finished::How::stopped: throw Error(Failure::interrupted, "", "interrupted");
     case Finished::How::timed_out:
@@ -108,6 +118,7 @@ OtherPicture run_renderer(const OtherRenderer& renderer, const RendererInput& in
     command.argv = filled(renderer, input, result.file, extension);
     command.folder = fs::absolute(input.folder);
     command.timeout = input.timeout;
+    command.memory = memory_limit();
     command.stop = watch.stop;
     result.command = command.argv;
     const fs::path program = command.argv.empty() ? fs::path() : find_program(command.argv.front());

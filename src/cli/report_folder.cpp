@@ -1,5 +1,6 @@
 #include "report_folder.h"
 
+#include "file.h"
 #include "interruption.h"
 #include "steps.h"
 
@@ -8,11 +9,7 @@
 
 #include <unistd.h>
 
-#include <cerrno>
-#include <charconv>
-#include <csignal>
 #include <system_error>
-#include <vector>
 
 namespace penumbra::cli {
 namespace {
@@ -25,24 +22,6 @@ constexpr float difference_gain = 100;  // shows what the eye cannot see
 fs::path plain(const fs::path& folder) {
     const fs::path normal = (folder / "").lexically_normal();
     return normal.has_parent_path() ? normal.parent_path() : normal;
-}
-
-// What a process that was killed has left behind: ".report.1234.tmp" when there is no process 1234.
-void remove_stale(const fs::path& folder, const std::string& prefix) {
-    std::error_code error;
-    std::vector<fs::path> stale;
-    for (const fs::directory_entry& entry :
-         fs::directory_iterator(folder.empty() ? "." : folder, error)) {
-        const std::string name = entry.path().filename().string();
-        if (!name.starts_with(prefix) || !name.ends_with(".tmp")) continue;
-        pid_t process = 0;
-        const char* const end = name.data() + name.size() - 4;
-        const auto [stop, wrong] = std::from_chars(name.data() + prefix.size(), end, process);
-        if (wrong == std::errc{} && stop == end && process > 0 && ::kill(process, 0) != 0 &&
-            errno == ESRCH)
-            stale.push_back(entry.path());
-    }
-    for (const fs::path& path : stale) fs::remove_all(path, error);
 }
 
 [[noreturn]] void fail(const fs::path& folder, const std::error_code& error) {

@@ -1,5 +1,7 @@
 #include "steps.h"
 
+#include "plain_text.h"
+
 #include "penumbra/image.h"
 #include "penumbra/tracer.h"
 
@@ -132,7 +134,9 @@ nlohmann::ordered_json losses_json(const Losses& losses) {
 }
 
 std::string json_text(const nlohmann::ordered_json& document) {
-    return document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+    return plain_json(
+               document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)) +
+           '\n';
 }
 
 }  // namespace penumbra::cli

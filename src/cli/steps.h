@@ -58,7 +58,7 @@ double sample_count(const RenderOptions& options);
 /// [{"place", "what", "count"}], equal ones together.
 nlohmann::ordered_json losses_json(const Losses& losses);
 
-/// `document` as text, with what is no UTF-8 replaced.
+/// `document` as text, with what is no UTF-8 replaced and what a terminal may obey escaped.
 std::string json_text(const nlohmann::ordered_json& document);
 
 }  // namespace penumbra::cli

@@ -85,9 +85,11 @@ std::vector<SceneJob> scenes_of(const Arguments& arguments) {
     return jobs;
 }
 
-// A scene that cannot even be read needs no report, only its message.
+// A scene that cannot even be read needs no report, only its message; and where nothing can be
+// written an earlier report stays.
 void stop_without_scene(const Outcome& only) {
-    if (only.failure && only.result.files.empty()) std::rethrow_exception(only.failure);
+    if (only.failure && (only.result.files.empty() || only.status == exit_output))
+        std::rethrow_exception(only.failure);
 }
 
 fs::path report_of(const Arguments& arguments) {

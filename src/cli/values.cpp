@@ -101,6 +101,22 @@ double read_number(const std::string& option, std::string_view text, Range range
     return *value;
 }
 
+std::size_t read_memory(const std::string& option, std::string_view text) {
+    constexpr std::string_view units = "KMGT";
+    constexpr double least = 32 << 20, most = double(std::size_t(1) << 60);
+    std::string_view number = text;
+    double unit = 1;
+    if (!number.empty())
+        if (const auto at = units.find(char(number.back() & ~0x20)); at != units.npos) {
+            unit = std::pow(1024.0, double(at) + 1);
+            number.remove_suffix(1);
+        }
+    const auto value = number_of<double>(number);
+    if (!value || !(*value * unit >= least && *value * unit <= most))
+        refuse(option, text, "a size of 32M or more, such as 512M or 2G");
+    return std::size_t(*value * unit);
+}
+
 std::array<int, 2> read_size(const std::string& option, std::string_view text) {
     const auto cross = text.find_first_of("xX");
     const auto width = number_of<int>(text.substr(0, cross));

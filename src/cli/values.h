@@ -20,6 +20,9 @@ struct Range {
 int read_integer(const std::string& option, std::string_view text, Range range);
 double read_number(const std::string& option, std::string_view text, Range range);
 
+/// Bytes, or with K, M, G or T a multiple of 1024, 1024^2, ...: "512M", "1.5G".
+std::size_t read_memory(const std::string& option, std::string_view text);
+
 /// The position of `text` in `words`.
 std::size_t read_choice(const std::string& option, std::string_view text,
                         const std::vector<std::string>& words);

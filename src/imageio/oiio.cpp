@@ -1,6 +1,7 @@
 // The image module: everything that penumbra asks of OpenImageIO, behind ImageModule.
 #include "image_module.h"
 #include "imageio/containers.h"
+#include "imageio/encoder.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -14,7 +15,6 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <string_view>
@@ -24,18 +24,8 @@ namespace penumbra {
 namespace {
 
 using OIIO::ImageInput;
-using OIIO::ImageOutput;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
-
-// OpenImageIO's messages may have several lines and name its own classes; keep the first sentence.
-std::string reason(const std::string& message) {
-    std::string text = message.substr(0, message.find('\n'));
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < ' ' || c == 127) c = ' ';
-    while (!text.empty() && (text.back() == '.' || text.back() == ' ')) text.pop_back();
-    return text.empty() ? "damaged or incomplete file" : text;
-}
 
 // OpenImageIO's name of the format, from the first bytes. Its own search would try every reader it
 // has, those of films and medical scans included.
@@ -122,7 +112,17 @@ std::vector<std::byte> pick(const std::vector<std::byte>& samples, std::size_t s
     return picked;
 }
 
-Decoded read_samples(ImageInput& input) {
+// What reading may take beside the samples: the file's own, tiles and strips.
+std::size_t working_memory(const ImageSpec& spec) {
+    const auto pixel = std::size_t(spec.nchannels) * std::size_t(spec.format.size());
+    const auto tile = [](int side) { return std::size_t(std::max(side, 0)); };
+    const std::size_t row_of_tiles =
+        (std::size_t(spec.width) + tile(spec.tile_width)) * tile(spec.tile_height);
+    const std::size_t picture = std::size_t(spec.width) * std::size_t(spec.height);
+    return pixel * (picture + 2 * row_of_tiles);
+}
+
+Decoded read_samples(ImageInput& input, const MayTake& may_take) {
     const ImageSpec spec = input.spec();
     if (std::string problem = size_problem(spec); !problem.empty()) return {{}, problem};
 
@@ -130,7 +130,10 @@ Decoded read_samples(ImageInput& input) {
     const int end = *std::max_element(channels.begin(), channels.end()) + 1;
     const auto [depth, type] = sample_type(spec.format);
     Raster raster = {spec.width, spec.height, int(channels.size()), depth, {}};
-    raster.data.resize(raster.texels() * std::size_t(end) * std::size_t(depth));
+    const std::size_t bytes = raster.texels() * std::size_t(end) * std::size_t(depth);
+    if (!may_take(bytes)) return {{}, no_memory};
+    raster.data.resize(bytes);
+    if (!may_take(working_memory(spec))) return {{}, no_memory};
     if (!input.read_image(0, 0, 0, end, type, raster.data.data()))
         return {{}, reason(input.geterror())};
     if (end != raster.channels || !std::is_sorted(channels.begin(), channels.end()))
@@ -157,12 +160,6 @@ struct TemporaryFile {
         out.write(reinterpret_cast<const char*>(content.data()), std::streamsize(content.size()));
         if (!out.flush()) throw std::runtime_error(path + " cannot be written");
     }
-    std::vector<std::byte> read() const {
-        std::ifstream in(path, std::ios::binary);
-        std::string text{std::istreambuf_iterator<char>(in), {}};
-        const auto bytes = std::as_bytes(std::span(text));
-        return {bytes.begin(), bytes.end()};
-    }
 };
 
 ImageSpec open_config() {
@@ -171,27 +168,27 @@ ImageSpec open_config() {
     return config;
 }
 
-Decoded decode_memory(ImageInput& input, std::span<const std::byte> file,
-                      const std::string& format) {
+Decoded decode_memory(ImageInput& input, std::span<const std::byte> file, const std::string& format,
+                      const MayTake& may_take) {
     OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(file.data()), file.size());
     input.set_ioproxy(&memory);
     ImageSpec spec;
     if (!input.open("memory." + format, spec, open_config())) return {{}, reason(input.geterror())};
-    Decoded decoded = read_samples(input);
+    Decoded decoded = read_samples(input, may_take);
     input.close();  // before the memory goes
     return decoded;
 }
 
 // Straight colours and, from a second decoding, their alpha.
-Decoded decode_webp(std::span<const std::byte> file) {
+Decoded decode_webp(std::span<const std::byte> file, const MayTake& may_take) {
     const auto input = ImageInput::create("webp");
     if (!input) return {{}, reason(OIIO::geterror())};
-    Decoded decoded = decode_memory(*input, file, "webp");
+    Decoded decoded = decode_memory(*input, file, "webp", may_take);
     const auto opaque = without_alpha(file);
     if (!decoded.problem.empty() || decoded.raster.channels != 4 || opaque.empty()) return decoded;
 
     const auto again = ImageInput::create("webp");  // reopened, the first would mix both up
-    const Decoded colors = decode_memory(*again, opaque, "webp");
+    const Decoded colors = decode_memory(*again, opaque, "webp", may_take);
     if (!colors.problem.empty() || colors.raster.channels != 3 ||
         colors.raster.texels() != decoded.raster.texels())
         return decoded;
@@ -200,76 +197,29 @@ Decoded decode_webp(std::span<const std::byte> file) {
     return decoded;
 }
 
-Decoded decode_file(std::span<const std::byte> file, const std::string& extension) {
+Decoded decode_file(std::span<const std::byte> file, const std::string& extension,
+                    const MayTake& may_take) {
     const std::string format = format_of(file, extension);
     if (format.empty()) return {{}, file.empty() ? "it is empty" : "unknown format"};
-    if (format == "webp") return decode_webp(file);
+    const Opening opening = opening_of(file, format);
+    if (opening.pixels > max_image_pixels) return {{}, "it has more pixels than are supported"};
+    if (!may_take(opening.memory)) return {{}, no_memory};
+    if (format == "webp") return decode_webp(file, may_take);
 
     const auto input = ImageInput::create(format);
     if (!input) return {{}, reason(OIIO::geterror())};
     if (format == "png") {
         const CheckedPng png = check_png(file);
-        return png.problem.empty() ? decode_memory(*input, png.file, format)
+        return png.problem.empty() ? decode_memory(*input, png.file, format, may_take)
                                    : Decoded{{}, png.problem};
     }
-    if (input->supports("ioproxy")) return decode_memory(*input, file, format);
+    if (input->supports("ioproxy")) return decode_memory(*input, file, format, may_take);
 
     const TemporaryFile temporary(extension);
     temporary.write(file);
     ImageSpec spec;
     if (!input->open(temporary.path, spec, open_config())) return {{}, reason(input->geterror())};
-    return read_samples(*input);
-}
-
-bool is_tiff(const std::string& extension) { return extension == ".tif" || extension == ".tiff"; }
-
-// The nearest depth that the format can store.
-TypeDesc file_type(Depth depth, const std::string& extension) {
-    if (extension == ".exr" || extension == ".hdr") return TypeDesc::FLOAT;
-    if (depth == Depth::u8 || extension == ".jpg" || extension == ".jpeg") return TypeDesc::UINT8;
-    if (depth == Depth::f32 && is_tiff(extension)) return TypeDesc::FLOAT;
-    return TypeDesc::UINT16;
-}
-
-ImageSpec file_spec(const Raster& raster, const std::string& extension, bool srgb) {
-    ImageSpec spec(raster.width, raster.height, raster.channels,
-                   file_type(raster.depth, extension));
-    if (raster.channels == 2) spec.channelnames = {"Y", "A"};
-    if (raster.channels % 2 == 0) spec.alpha_channel = raster.channels - 1;
-    spec["oiio:UnassociatedAlpha"] = 1;
-    spec["DateTime"] = "";  // or the same picture would have other bytes every second
-    if (srgb) spec["oiio:ColorSpace"] = "sRGB";
-    if (extension == ".exr" || is_tiff(extension)) spec["compression"] = "zip";
-    if (extension == ".jpg" || extension == ".jpeg") spec["compression"] = "jpeg:95";
-    return spec;
-}
-
-TypeDesc memory_type(Depth depth) {
-    return depth == Depth::u8    ? TypeDesc(TypeDesc::UINT8)
-           : depth == Depth::u16 ? TypeDesc(TypeDesc::UINT16)
-                                 : TypeDesc(TypeDesc::FLOAT);
-}
-
-Encoded encode_file(const Raster& raster, const std::string& extension, bool srgb) {
-    const auto output = ImageOutput::create(extension.substr(1));
-    if (!output) return {{}, reason(OIIO::geterror())};
-    const ImageSpec spec = file_spec(raster, extension, srgb);
-    const auto write = [&](const std::string& name) {
-        return output->open(name, spec) &&
-               output->write_image(memory_type(raster.depth), raster.data.data()) &&
-               output->close();
-    };
-    // libtiff reads back what it wrote, which IOVecOutput cannot do.
-    if (is_tiff(extension) || !output->supports("ioproxy")) {
-        const TemporaryFile temporary(extension);
-        if (!write(temporary.path)) return {{}, reason(output->geterror())};
-        return {temporary.read(), ""};
-    }
-    OIIO::Filesystem::IOVecOutput memory;
-    output->set_ioproxy(&memory);
-    if (!write("memory" + extension)) return {{}, reason(output->geterror())};
-    const auto bytes = std::as_bytes(std::span(memory.buffer()));
-    return {{bytes.begin(), bytes.end()}, ""};
+    return read_samples(*input, may_take);
 }
 
 // Calls `work` and turns whatever it throws into a problem.
@@ -278,7 +228,7 @@ Result guarded(Work work) {
     try {
         return work();
     } catch (const std::bad_alloc&) {
-        return {{}, "not enough memory"};
+        return {{}, no_memory};
     } catch (const std::exception& error) {
         return {{}, reason(error.what())};
     } catch (...) {
@@ -286,23 +236,23 @@ Result guarded(Work work) {
     }
 }
 
-Decoded decode(std::span<const std::byte> file, const std::string& extension) {
-    return guarded<Decoded>([&] { return decode_file(file, extension); });
-}
-
-Encoded encode(const Raster& raster, const std::string& extension, bool srgb) {
-    return guarded<Encoded>([&] { return encode_file(raster, extension, srgb); });
+Decoded decode(std::span<const std::byte> file, const std::string& extension,
+               const MayTake& may_take) {
+    return guarded<Decoded>([&] { return decode_file(file, extension, may_take); });
 }
 
 }  // namespace
 }  // namespace penumbra
 
-extern "C" __attribute__((visibility("default"))) const penumbra::ImageModule*
-penumbra_image_module() {
+extern "C" __attribute__((visibility("default"))) const void* penumbra_image_module() {
     static const penumbra::ImageModule module = {penumbra::image_module_abi, penumbra::decode,
-                                                 penumbra::encode};
+                                                 penumbra::open_encoder};
     // One image at a time needs no pool of threads, and none is left to join at exit.
     OIIO::attribute("threads", 1);
     OIIO::attribute("exr_threads", -1);
+    // What it checks by itself, where it allocates before we know what: a picture of eight
+    // channels.
+    OIIO::attribute("limits:imagesize_MB",
+                    int(penumbra::max_image_pixels * 8 * sizeof(float) >> 20));
     return &module;
 }

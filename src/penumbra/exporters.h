@@ -35,6 +35,9 @@ struct Exported {
 Exported write_pov(const NormalisedScene& scene, const RenderOptions& render,
                    const std::filesystem::path& file, const PovOptions& options = {});
 
+/// What write_pov() would say is lost, without writing anything.
+Losses pov_losses(const NormalisedScene& scene, const RenderOptions& render);
+
 /// The text of the .pov alone, for tests; `stem` is FILE without .pov.
 std::string pov_text(const NormalisedScene& scene, const RenderOptions& render,
                      const std::string& stem, const PovOptions& options = {});

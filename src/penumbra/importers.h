@@ -29,12 +29,15 @@ struct Imported {
     Losses losses = {};  ///< what the files said that Scene cannot hold
 };
 
-/// Which of the pictures that a glTF file can give is wanted. OBJ files ignore it.
+/// Which of the pictures that a model file can give is wanted, and what it may read for that. Only
+/// `allowed_paths` matters to OBJ files.
 struct ModelOptions {
     std::string scene = {};           ///< name or number; empty: the file's default
     std::string variant = {};         ///< KHR_materials_variants, by name; empty: none
     std::string animation = {};       ///< name or number; empty: the first
     std::optional<double> time = {};  ///< seconds; without it and `animation` the nodes' own pose
+    /// Folders below which a model may name files, besides its own.
+    std::vector<std::filesystem::path> allowed_paths = {};
 };
 
 /// Reads glTF 2.0, .gltf or .glb. The scene has only what the file says. Throws Error (input; usage
@@ -42,7 +45,7 @@ struct ModelOptions {
 Imported read_gltf(const std::filesystem::path& file, const ModelOptions& options = {});
 
 /// Reads Wavefront OBJ with its MTL files. Throws Error (input).
-Imported read_obj(const std::filesystem::path& file);
+Imported read_obj(const std::filesystem::path& file, const ModelOptions& options = {});
 
 /// What becomes of normal maps, which POV-Ray does not have.
 enum class NormalMaps {

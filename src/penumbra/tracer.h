@@ -5,6 +5,7 @@
 #include "penumbra/scene.h"
 #include "penumbra/watch.h"
 
+#include <functional>
 #include <vector>
 
 namespace penumbra {
@@ -13,6 +14,18 @@ namespace penumbra {
 /// The same input gives the same bytes for any number of threads.
 /// Precondition: defects(scene.scene).empty(). Throws Error (interrupted).
 Image render(const NormalisedScene& scene, const RenderOptions& options, const Watch& watch = {});
+
+/// The rows of a picture from number `first` on.
+using TakeRows = std::function<void(int first, const Image& rows)>;
+
+/// Pictures are rendered in bands of so many rows, whatever is done with them.
+inline constexpr int render_band = 32;
+
+/// The same picture from row `first` on, a multiple of render_band, without ever being in memory as
+/// a whole: calls `take` for finished bands from the top, one at a time, on any thread. What it
+/// throws ends the rendering. Throws Error (interrupted).
+void render_rows(const NormalisedScene& scene, const RenderOptions& options, int first,
+                 const TakeRows& take, const Watch& watch = {});
 
 /// What the ray through the centre of each pixel hits, row by row from the top: objects are counted
 /// instances first, then spheres, then planes; no_index where it hits nothing.

@@ -1,0 +1,58 @@
+#include "embree.h"
+
+#include "memory.h"
+
+#include "penumbra/limits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace penumbra::embree {
+namespace {
+
+bool may_allocate(void*, ssize_t bytes, bool done) {
+    return done || bytes <= 0 || memory_is_left(std::size_t(bytes));
+}
+
+// Three numbers an item.
+void* new_buffer(RTCDevice device, RTCGeometry geometry, RTCBufferType type, std::size_t count) {
+    const bool vertices = type == RTC_BUFFER_TYPE_VERTEX;
+    void* const buffer = rtcSetNewGeometryBuffer(
+        geometry, type, 0, vertices ? RTC_FORMAT_FLOAT3 : RTC_FORMAT_UINT3,
+        3 * (vertices ? sizeof(float) : sizeof(unsigned)), std::max<std::size_t>(count, 1));
+    if (buffer != nullptr) return buffer;
+    rtcReleaseGeometry(geometry);
+    check(device);
+    throw std::runtime_error("Embree makes no room for a mesh");
+}
+
+}  // namespace
+
+void watch_memory(RTCDevice device) {
+    rtcSetDeviceMemoryMonitorFunction(device, may_allocate, nullptr);
+}
+
+void check(RTCDevice device) {
+    switch (rtcGetDeviceError(device)) {
+    case RTC_ERROR_NONE: return;
+    case RTC_ERROR_OUT_OF_MEMORY:
+    case RTC_ERROR_CANCELLED:
+        throw MemoryError(Failure::input, "",
+                          fmt::format("the scene has more facets than the {} of memory that may be "
+                                      "used suffice for (raise it with --max-memory)",
+                                      memory_text(memory_limit())));
+    default: throw std::runtime_error("Embree cannot be used");
+    }
+}
+
+float* new_vertices(RTCDevice device, RTCGeometry geometry, std::size_t count) {
+    return static_cast<float*>(new_buffer(device, geometry, RTC_BUFFER_TYPE_VERTEX, count));
+}
+
+unsigned* new_indices(RTCDevice device, RTCGeometry geometry, std::size_t count) {
+    return static_cast<unsigned*>(new_buffer(device, geometry, RTC_BUFFER_TYPE_INDEX, count));
+}
+
+}  // namespace penumbra::embree

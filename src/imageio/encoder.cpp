@@ -1,0 +1,193 @@
+#include "imageio/encoder.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <exception>
+#include <new>
+#include <system_error>
+
+namespace penumbra {
+namespace {
+
+using OIIO::ImageOutput;
+using OIIO::ImageSpec;
+using OIIO::TypeDesc;
+
+bool is_tiff(const std::string& extension) { return extension == ".tif" || extension == ".tiff"; }
+
+// The nearest depth that the format can store.
+TypeDesc file_type(Depth depth, const std::string& extension) {
+    if (extension == ".exr" || extension == ".hdr") return TypeDesc::FLOAT;
+    if (depth == Depth::u8 || extension == ".jpg" || extension == ".jpeg") return TypeDesc::UINT8;
+    if (depth == Depth::f32 && is_tiff(extension)) return TypeDesc::FLOAT;
+    return TypeDesc::UINT16;
+}
+
+ImageSpec file_spec(const Raster& frame, const std::string& extension, bool srgb) {
+    ImageSpec spec(frame.width, frame.height, frame.channels, file_type(frame.depth, extension));
+    if (frame.channels == 2) spec.channelnames = {"Y", "A"};
+    if (frame.channels % 2 == 0) spec.alpha_channel = frame.channels - 1;
+    spec["oiio:UnassociatedAlpha"] = 1;
+    spec["DateTime"] = "";  // or the same picture would have other bytes every second
+    if (srgb) spec["oiio:ColorSpace"] = "sRGB";
+    if (extension == ".exr" || is_tiff(extension)) spec["compression"] = "zip";
+    if (extension == ".jpg" || extension == ".jpeg") spec["compression"] = "jpeg:95";
+    return spec;
+}
+
+TypeDesc memory_type(Depth depth) {
+    return depth == Depth::u8    ? TypeDesc(TypeDesc::UINT8)
+           : depth == Depth::u16 ? TypeDesc(TypeDesc::UINT16)
+                                 : TypeDesc(TypeDesc::FLOAT);
+}
+
+// A file that is open already. OpenImageIO's own files lose what a full disk refuses.
+class OpenFile : public OIIO::Filesystem::IOProxy {
+  public:
+    OpenFile(int opened, const std::string& name) : IOProxy(name, Write), descriptor(opened) {}
+
+    // Not "file", which OpenImageIO takes for a class of its own.
+    const char* proxytype() const override { return "descriptor"; }
+    void close() override { m_mode = Closed; }
+
+    std::size_t write(const void* from, std::size_t size) override {
+        const std::size_t done = pwrite(from, size, m_pos);
+        m_pos += std::int64_t(done);
+        return done;
+    }
+    std::size_t pwrite(const void* from, std::size_t size, std::int64_t at) override {
+        const auto* bytes = static_cast<const char*>(from);
+        std::size_t done = 0;
+        while (done < size) {
+            const ssize_t n = ::pwrite(descriptor, bytes + done, size - done, at + off_t(done));
+            if (n < 0 && errno == EINTR) continue;
+            if (n <= 0) {
+                if (error == 0) error = n < 0 ? errno : ENOSPC;
+                break;
+            }
+            done += std::size_t(n);
+        }
+        return done;
+    }
+    std::size_t size() const override {
+        const off_t end = ::lseek(descriptor, 0, SEEK_END);
+        return end < 0 ? 0 : std::size_t(end);
+    }
+
+    int error = 0;  ///< the system's, of the first write that failed
+    const int descriptor;
+};
+
+// Calls `work` and turns whatever it throws into a problem.
+template <class Work>
+std::string guarded(Work work) {
+    try {
+        return work();
+    } catch (const std::bad_alloc&) {
+        return "not enough memory";
+    } catch (const std::exception& error) {
+        return reason(error.what());
+    } catch (...) {
+        return "unknown failure";
+    }
+}
+
+class OiioEncoder : public RowEncoder {
+  public:
+    OiioEncoder(int descriptor, const std::string& name) : file(descriptor, name) {}
+    ~OiioEncoder() override {
+        guarded([&] {
+            output.reset();  // it may still write
+            return std::string();
+        });
+    }
+
+    std::string open(const Raster& frame, const std::string& extension, bool srgb) {
+        height = frame.height;
+        type = memory_type(frame.depth);
+        row_size =
+            std::size_t(frame.width) * std::size_t(frame.channels) * std::size_t(frame.depth);
+        return outcome([&] {
+            output = ImageOutput::create(extension.substr(1));
+            if (!output) return false;
+            tiff = is_tiff(extension);
+            // libtiff reads back what it wrote, which OpenImageIO does not hand on.
+            if (!tiff && !output->set_ioproxy(&file)) return false;
+            return output->open(tiff ? by_name() : file.filename(),
+                                file_spec(frame, extension, srgb));
+        });
+    }
+
+    // A few rows at a time, always the same ones: some formats compress what comes together.
+    std::string write(const std::byte* rows, int count) override {
+        constexpr int together = 64;
+        return outcome([&] {
+            for (; count > 0; count -= std::min(count, together)) {
+                const int part = std::min(count, together);
+                if (!output->write_scanlines(next, next + part, 0, type, rows)) return false;
+                next += part;
+                rows += row_size * std::size_t(part);
+            }
+            return true;
+        });
+    }
+
+    std::string finish() override {
+        return outcome([&] { return output->close() && (!tiff || is_whole()); });
+    }
+
+  private:
+    OpenFile file;  // outlives `output`
+    std::unique_ptr<ImageOutput> output = {};
+    bool tiff = false;
+    TypeDesc type = {};
+    std::size_t row_size = 0;
+    int height = 0, next = 0;
+
+    std::string by_name() const { return "/proc/self/fd/" + std::to_string(file.descriptor); }
+
+    // libtiff writes its directory last and does not say whether it could.
+    bool is_whole() const {
+        const auto written = OIIO::ImageInput::create("tiff");
+        ImageSpec spec;
+        return written && written->open(by_name(), spec) && spec.height == height;
+    }
+
+    template <class Work>
+    std::string outcome(Work work) {
+        return guarded([&]() -> std::string {
+            const bool done = work();
+            if (file.error != 0) return std::generic_category().message(file.error);
+            if (done) return "";
+            return reason(output ? output->geterror() : OIIO::geterror());
+        });
+    }
+};
+
+}  // namespace
+
+std::string reason(const std::string& message) {
+    std::string text = message.substr(0, message.find('\n'));
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < ' ' || c == 127) c = ' ';
+    while (!text.empty() && (text.back() == '.' || text.back() == ' ')) text.pop_back();
+    return text.empty() ? "damaged or incomplete file" : text;
+}
+
+OpenedEncoder open_encoder(const Raster& frame, const std::string& extension, bool srgb,
+                           int descriptor) {
+    OpenedEncoder result;
+    result.problem = guarded([&] {
+        auto encoder = std::make_unique<OiioEncoder>(descriptor, "picture" + extension);
+        std::string problem = encoder->open(frame, extension, srgb);
+        if (problem.empty()) result.encoder = std::move(encoder);
+        return problem;
+    });
+    return result;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,37 @@
+// Scene -> picture file, without the picture ever being in memory as a whole.
+#pragma once
+
+#include "penumbra/image.h"
+#include "penumbra/scene.h"
+#include "penumbra/watch.h"
+
+#include <filesystem>
+#include <string>
+
+namespace penumbra {
+
+struct RenderFileOptions {
+    SaveOptions save = {};
+    /// Seconds between checkpoints: what is finished is kept in a file beside the picture's,
+    /// "chair.png.checkpoint", which goes away with success. 0: none.
+    double checkpoint_interval = 5;
+    bool resume = false;  ///< go on from the checkpoint of an earlier, interrupted call
+    /// One line that changes with the program: another one's checkpoint is not used.
+    std::string program = {};
+};
+
+/// What render_file() has done, and the wall time of it.
+struct RenderedFile {
+    double build_seconds = 0, render_seconds = 0;  ///< the search trees; the picture
+    int resumed_rows = 0;                          ///< that a checkpoint had
+    std::string warning = {};                      ///< about the checkpoint; may be empty
+};
+
+/// Renders to `file` as render() and save_image() do, with the same bytes whether it was
+/// interrupted and resumed or not. The file appears when it is whole. Throws Error (output,
+/// interrupted).
+RenderedFile render_file(const NormalisedScene& scene, const RenderOptions& options,
+                         const std::filesystem::path& file,
+                         const RenderFileOptions& file_options = {}, const Watch& watch = {});
+
+}  // namespace penumbra

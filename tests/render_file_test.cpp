@@ -1,0 +1,197 @@
+// Rendering into a file, with interruptions.
+#include "image_writer.h"
+#include "small_scenes.h"
+#include "support.h"
+
+#include "penumbra/render_file.h"
+#include "penumbra/tracer.h"
+
+#include <atomic>
+#include <stop_token>
+
+namespace {
+
+using namespace penumbra;
+using test::TempDir;
+namespace fs = std::filesystem;
+
+NormalisedScene mirror_scene() {
+    Scene scene = test::empty_scene();
+    scene.materials[0].reflection = Color(0.4F);
+    scene.materials[0].specular = 0.5F;
+    scene.background = Color(0.1F, 0.2F, 0.5F);
+    scene.spheres = {{.name = "a", .center = {-1, 0, 0}, .radius = 1.2, .material = 0},
+                     {.name = "b", .center = {1.4, 0.5, 0}, .radius = 1, .material = 0}};
+    scene.lights = {{.name = "sun", .position = {4, 8, 6}}};
+    return test::as_is(std::move(scene));
+}
+
+constexpr RenderOptions small = {.width = 70, .height = 150};
+
+// Stops the rendering once that share is done.
+RenderedFile interrupt_at(double share, const fs::path& file, RenderFileOptions options,
+                          const NormalisedScene& scene) {
+    std::stop_source source;
+    const auto progress = [&](double done) {
+        if (done >= share) source.request_stop();
+    };
+    return render_file(scene, small, file, options, {progress, source.get_token()});
+}
+
+// Leaves a checkpoint of about half a picture.
+void leave_checkpoint(const fs::path& file, const NormalisedScene& scene) {
+    const std::string message =
+        test::message_of([&] { interrupt_at(0.5, file, {.checkpoint_interval = 1e-9}, scene); });
+    CHECK(message == "interrupted; --resume goes on from its checkpoint");
+    CHECK_FALSE(fs::exists(file));
+    REQUIRE(fs::exists(file.string() + ".checkpoint"));
+}
+
+std::size_t entries(const fs::path& folder) {
+    return std::size_t(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+}  // namespace
+
+TEST_CASE("render_file, writes what render and save_image do") {
+    const TempDir folder;
+    const NormalisedScene scene = mirror_scene();
+    const Image whole = render(scene, small);
+    for (const char* name : {"a.png", "a.exr", "a.tif", "a.jpg", "a.hdr"}) {
+        INFO(name);
+        const std::string stem = name;
+        save_image(folder / ("saved-" + stem), whole);
+        const RenderedFile done = render_file(scene, small, folder / stem);
+        CHECK(test::read(folder / stem) == test::read(folder / ("saved-" + stem)));
+        CHECK(done.resumed_rows == 0);
+        CHECK(done.warning.empty());
+    }
+    CHECK(entries(folder.path) == 10);
+}
+
+TEST_CASE("render_rows, gives the same rows from any band on") {
+    const NormalisedScene scene = mirror_scene();
+    const Image whole = render(scene, small);
+    for (const int first : {0, render_band, 4 * render_band}) {
+        int next = first;
+        render_rows(scene, small, first, [&](int row, const Image& rows) {
+            CHECK(row == next);
+            next += rows.height;
+            for (int y = 0; y < rows.height; ++y)
+                for (int x = 0; x < rows.width; ++x) REQUIRE(rows.at(x, y) == whole.at(x, row + y));
+        });
+        CHECK(next == small.height);
+    }
+}
+
+TEST_CASE("render_rows, ends with what its receiver throws") {
+    const NormalisedScene scene = mirror_scene();
+    const auto full = [](int, const Image&) { throw Error(Failure::output, "disk", "is full"); };
+    for (const int threads : {1, 2}) {
+        RenderOptions options = small;
+        options.threads = threads;
+        CHECK(test::message_of([&] { render_rows(scene, options, 0, full); }) == "disk: is full");
+    }
+}
+
+TEST_CASE("a resumed picture has the bytes of an undisturbed one") {
+    const TempDir folder;
+    const NormalisedScene scene = mirror_scene();
+    for (const char* name : {"a.png", "a.exr", "a.jpg"}) {
+        const fs::path file = folder / name, other = folder / ("undisturbed-" + std::string(name));
+        render_file(scene, small, other);
+        leave_checkpoint(file, scene);
+        const RenderedFile done = render_file(scene, small, file, {.resume = true});
+        CHECK(done.resumed_rows >= render_band);
+        CHECK(done.warning.empty());
+        CHECK(test::read(file) == test::read(other));
+        CHECK_FALSE(fs::exists(file.string() + ".checkpoint"));
+    }
+}
+
+TEST_CASE("what is damaged in a checkpoint is rendered again") {
+    const TempDir folder;
+    const NormalisedScene scene = mirror_scene();
+    const fs::path file = folder / "a.png", checkpoint = folder / "a.png.checkpoint";
+    render_file(scene, small, folder / "b.png");
+    leave_checkpoint(file, scene);
+    const std::string whole = test::read(checkpoint);
+    const std::size_t band = std::size_t(small.width) * 3 * render_band;
+    REQUIRE(whole.size() > band);
+
+    const auto resumed_rows = [&](const std::string& content) {
+        test::write(checkpoint, content);
+        const RenderedFile done = render_file(scene, small, file, {.resume = true});
+        CHECK(test::read(file) == test::read(folder / "b.png"));
+        CHECK_FALSE(fs::exists(checkpoint));
+        return done.resumed_rows;
+    };
+    const int all = resumed_rows(whole);
+    CHECK(resumed_rows(whole + "the beginning of a piece") == all);
+    CHECK(resumed_rows(whole.substr(0, whole.size() - 1)) < all);
+    std::string changed = whole;
+    changed[whole.size() - band / 2] = char(changed[whole.size() - band / 2] + 1);
+    CHECK(resumed_rows(changed) < all);
+    CHECK(resumed_rows("") == 0);
+    CHECK(resumed_rows("penumbra checkpoint 1 of another picture\n") == 0);
+}
+
+TEST_CASE("somebody else's file is no checkpoint") {
+    const TempDir folder;
+    test::write(folder / "a.png.checkpoint", "notes");
+    render_file(mirror_scene(), small, folder / "a.png", {.resume = true});
+    CHECK(test::read(folder / "a.png.checkpoint") == "notes");
+    const RenderedFile done =
+        render_file(mirror_scene(), small, folder / "a.png", {.checkpoint_interval = 1e-9});
+    CHECK(done.warning == "no checkpoint can be written beside the picture");
+    CHECK(test::read(folder / "a.png.checkpoint") == "notes");
+}
+
+TEST_CASE("the checkpoint of another picture is not used") {
+    const TempDir folder;
+    const NormalisedScene scene = mirror_scene();
+    NormalisedScene other = scene;
+    other.scene.spheres[0].radius = 1.1;
+    const fs::path file = folder / "a.png";
+    leave_checkpoint(file, other);
+    const RenderedFile done = render_file(scene, small, file, {.resume = true});
+    CHECK(done.resumed_rows == 0);
+    CHECK(done.warning == file.string() + ".checkpoint: is of another picture or in use; the "
+                                          "picture is rendered from the start");
+    render_file(scene, small, folder / "b.png");
+    CHECK(test::read(file) == test::read(folder / "b.png"));
+}
+
+TEST_CASE("a short rendering leaves no checkpoint") {
+    const TempDir folder;
+    CHECK(test::message_of([&] { interrupt_at(0.5, folder / "a.png", {}, mirror_scene()); }) ==
+          "interrupted");
+    CHECK(test::message_of([&] {
+              interrupt_at(0.5, folder / "a.png", {.checkpoint_interval = 0}, mirror_scene());
+          }) == "interrupted");
+    CHECK(entries(folder.path) == 0);
+}
+
+TEST_CASE("a picture larger than what is kept is written as it comes") {
+    const TempDir folder;
+    Image image(1500, 2500);  // 45 MB of floats
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        image.pixels[i] = Color(float(i % 977) / 977, float(i % 251) / 251, float(i % 31));
+    for (const char* name : {"a.exr", "a.png"}) {
+        save_image(folder / name, image, {.bits = 16});
+        const PictureFormat format =
+            picture_format(folder / name, image.width, image.height, {.bits = 16});
+        SampleWriter writer(folder / ("rows-" + std::string(name)), format.frame, format.srgb());
+        std::vector<std::byte> samples;
+        for (int y = 0; y < image.height; ++y) {
+            samples.clear();
+            append_samples({&image.at(0, y), std::size_t(image.width)}, format, samples);
+            writer.append(samples);
+        }
+        writer.finish();
+        CHECK(test::read(folder / name) == test::read(folder / ("rows-" + std::string(name))));
+        const Image back = load_image(folder / name);
+        CHECK(std::abs(back.at(700, 2499).x - image.at(700, 2499).x) < 1e-4F);
+        CHECK(std::abs(back.at(3, 1700).y - image.at(3, 1700).y) < 1e-4F);
+    }
+}
