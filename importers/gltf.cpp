@@ -103,6 +103,13 @@ void Walker::node(int index, bool visible) {
     if (visible) read_light(reader, index, world);
 }
 
+bool has_usable_size(const Matrix& m) {
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 3; ++column)
+            if (std::abs(m[row][column]) > largest_in_transform) return false;
+    return true;
+}
+
 // A matrix that has no inverse up to rounding: it flattens what it is applied to, or leaves next to
 // nothing of it.
 bool is_flat(const Matrix& m) {
@@ -154,7 +161,7 @@ void Walker::place(const ShownMesh& shown, int index, const Matrix& world) {
     const std::string& own_name = model().nodes[std::size_t(index)].name;
     const std::string name = own_name.empty() ? fmt::format("node{}", index) : own_name;
     Scene& scene = reader.scene;
-    if (!finite(world))
+    if (!finite(world) || !has_usable_size(world))
         throw Error(Failure::input, reader.document.place(pointer),
                     "the position of one of its instances is too large a number");
     MemoryClaim claim;

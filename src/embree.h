@@ -7,6 +7,9 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include "penumbra/math.h"
+
+#include <cmath>
 #include <cstddef>
 
 namespace penumbra::embree {
@@ -21,6 +24,18 @@ void check(RTCDevice device);
 /// released and check() throws.
 float* new_vertices(RTCDevice device, RTCGeometry geometry, std::size_t count);
 unsigned* new_indices(RTCDevice device, RTCGeometry geometry, std::size_t count);
+
+/// Embree takes no rays whose numbers are larger than 1.8e18, in the space of an instance either;
+/// Debian's build of it aborts. Hostile scenes get that far, and sane ones not to here.
+inline constexpr double limit = 1e15;
+
+inline bool takes(const Vec3& v) {
+    return std::abs(v.x) + std::abs(v.y) + std::abs(v.z) < limit;  // not if it is NaN
+}
+inline bool takes(const Matrix& m) {
+    return takes(Vec3(m[0][0], m[0][1], m[0][2])) && takes(Vec3(m[1][0], m[1][1], m[1][2])) &&
+           takes(Vec3(m[2][0], m[2][1], m[2][2])) && takes(Vec3(m[3][0], m[3][1], m[3][2]));
+}
 
 /// What a query tells Embree besides the ray: coherent packets traverse together.
 struct Query {

@@ -45,25 +45,10 @@ RTCGeometry triangles_of(RTCDevice device, const Mesh& mesh, const Matrix& to_wo
     return geometry;
 }
 
-// Embree takes no rays whose numbers are larger than 1.8e18, in the space of an instance either;
-// Debian's build of it aborts. Hostile scenes get that far, and sane ones not to here.
-constexpr double embree_limit = 1e15;
-
-bool embree_takes(const Vec3& v) {
-    return std::abs(v.x) + std::abs(v.y) + std::abs(v.z) < embree_limit;  // not if it is NaN
-}
-
-bool embree_takes(const Matrix& m) {
-    double sum = 0;
-    for (int row = 0; row < 4; ++row)
-        for (int column = 0; column < 3; ++column) sum += std::abs(m[row][column]);
-    return sum < embree_limit;
-}
-
 // No ray goes further than greatest_depth, so that all start near the camera.
 bool camera_is_in_reach(const Scene& scene) {
     return scene.camera >= scene.cameras.size() ||
-           embree_takes(scene.cameras[scene.camera].position);
+           embree::takes(scene.cameras[scene.camera].position);
 }
 
 // Embree's column-major 3x4 of our row-vector matrix.
@@ -169,8 +154,8 @@ Facets::Facets(const Scene& scene) : scene_(scene), device_(std::make_unique<Dev
                              .smooth = material.smooth && !mesh.normals.empty(),
                              .opaque = opaque(material)};
         translucent_ |= !placed.opaque;
-        const bool shared = uses[instance.mesh] > 1 && embree_takes(instance.transform) &&
-                            embree_takes(placed.to_mesh);
+        const bool shared = uses[instance.mesh] > 1 && embree::takes(instance.transform) &&
+                            embree::takes(placed.to_mesh);
         instanced_ |= shared;
         RTCGeometry geometry =
             shared ? device_->instance_of(mesh, instance.mesh, instance.transform)
@@ -237,7 +222,7 @@ Index instance_in(const RTCRayHit& ray) {
 template <class Accept>
 bool Facets::walk(const Vec3& origin, const Vec3& direction, float from, double farthest,
                   unsigned mask, Accept accept) const {
-    if (!embree_takes(direction)) return false;
+    if (!embree::takes(direction)) return false;
     embree::Query query(false);
     float near = from;
     while (true) {
@@ -318,7 +303,7 @@ void Facets::closest_packets(const Rays& rays, Hits& hits, bool coherent) const 
             const double shift = std::max(0.0, (center_ - origin).dot(direction) - reach_);
             const Vec3 start = shift > reach_ ? origin + direction * shift : origin;
             const double moved = shift > reach_ ? shift : 0;
-            valid[lane] = embree_takes(direction) ? -1 : 0;
+            valid[lane] = embree::takes(direction) ? -1 : 0;
             packet.ray.org_x[lane] = float(start.x);
             packet.ray.org_y[lane] = float(start.y);
             packet.ray.org_z[lane] = float(start.z);

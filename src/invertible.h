@@ -7,4 +7,7 @@ namespace penumbra {
 /// mesh, and normalise() must still find an inverse.
 inline constexpr double least_determinant = 1e-90;
 
+/// Of a transform's numbers, for the same reason.
+inline constexpr double largest_in_transform = 1e30;
+
 }  // namespace penumbra

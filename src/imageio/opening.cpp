@@ -34,13 +34,13 @@ struct Cursor {
         at += size;
         return found;
     }
-    // Up to a zero.
+    // Up to a zero, or to the end.
     std::string_view name() {
         const std::size_t start = at;
-        while (byte() != 0) {
-        }
-        return {reinterpret_cast<const char*>(bytes.data()) + start,
-                at - start - (ended() && bytes.back() != std::byte{0} ? 0 : 1)};
+        std::size_t length = 0;
+        while (byte() != 0) ++length;
+        if (length == 0) return {};
+        return {reinterpret_cast<const char*>(bytes.data()) + start, length};
     }
 };
 
