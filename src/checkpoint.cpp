@@ -1,5 +1,7 @@
 #include "checkpoint.h"
 
+#include "file.h"
+
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -42,16 +44,6 @@ std::uint64_t sum_of(std::span<const std::byte> bytes) {
     std::uint64_t sum = 0;
     for (const std::uint64_t lane : lanes) sum = (sum ^ lane ^ (lane >> 29U)) * 0x100000001b3U;
     return sum;
-}
-
-bool write_all(int out, std::span<const std::byte> bytes) {
-    while (!bytes.empty()) {
-        const ssize_t n = ::write(out, bytes.data(), bytes.size());
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) return false;
-        bytes = bytes.subspan(std::size_t(n));
-    }
-    return true;
 }
 
 }  // namespace
@@ -125,15 +117,15 @@ bool Checkpoint::is_ours() const {
 bool Checkpoint::begin() {
     return open_locked() && is_ours() && ::ftruncate(descriptor, 0) == 0 &&
            ::lseek(descriptor, 0, SEEK_SET) == 0 &&
-           write_all(descriptor, std::as_bytes(std::span(head)));
+           write_all(descriptor, std::as_bytes(std::span(head))) == 0;
 }
 
 bool Checkpoint::append(std::span<const std::byte> samples) {
     if (failed) return false;
     const Piece piece = {.size = samples.size(), .sum = sum_of(samples)};
     const bool open = descriptor >= 0 || begin();
-    if (open && write_all(descriptor, std::as_bytes(std::span(&piece, 1))) &&
-        write_all(descriptor, samples))
+    if (open && write_all(descriptor, std::as_bytes(std::span(&piece, 1))) == 0 &&
+        write_all(descriptor, samples) == 0)
         return true;
     failed = true;
     if (open) remove();

@@ -83,16 +83,6 @@ Buffer read_whole(const std::filesystem::path& file, std::uintmax_t max) {
     return read_descriptor<Buffer>(in.number, file, max);
 }
 
-int write_all(int out, std::span<const std::byte> content) {
-    while (!content.empty()) {
-        const ssize_t n = ::write(out, content.data(), content.size());
-        if (n < 0 && errno == EINTR) continue;
-        if (n < 0) return errno;
-        content = content.subspan(std::size_t(n));
-    }
-    return 0;
-}
-
 int flush(int out) { return ::fsync(out) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno; }
 
 // What `from` holds, from its beginning.
@@ -186,6 +176,16 @@ std::vector<std::byte> read_bytes(const std::filesystem::path& file, std::uintma
 std::vector<std::byte> read_open(int descriptor, const std::filesystem::path& file,
                                  std::uintmax_t max) {
     return read_descriptor<std::vector<std::byte>>(descriptor, file, max);
+}
+
+int write_all(int out, std::span<const std::byte> content) {
+    while (!content.empty()) {
+        const ssize_t n = ::write(out, content.data(), content.size());
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) return errno;
+        content = content.subspan(std::size_t(n));
+    }
+    return 0;
 }
 
 struct StagedFile::Parts {

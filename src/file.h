@@ -31,6 +31,9 @@ std::vector<std::byte> read_open(int descriptor, const std::filesystem::path& fi
 /// processes have left there that were killed: where there is no process of that id.
 void remove_stale(const std::filesystem::path& folder, const std::string& prefix);
 
+/// Writes all of `content` to a descriptor of the system's; returns its error, 0 for none.
+int write_all(int out, std::span<const std::byte> content);
+
 /// A file in the making, which takes its name in one step when it is whole. It lies beside that
 /// name and, where the file system can, has none of its own until then, so that whatever fails or
 /// interrupts leaves what was there. All throw Error (output).

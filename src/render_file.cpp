@@ -27,12 +27,12 @@ double seconds_since(Clock::time_point start) {
 }
 
 std::string identity_of(const NormalisedScene& scene, const RenderOptions& options,
-                        const PictureFormat& format, const std::string& program) {
+                        const PictureFormat& format, const RenderFileOptions& chosen) {
     std::array<char, 64> text = {};
     std::snprintf(text.data(), text.size(), "%016llx %d %d ",
                   static_cast<unsigned long long>(fingerprint(scene, options)),
                   int(format.frame.depth), int(format.positive));
-    return text.data() + program;
+    return text.data() + (chosen.program ? chosen.program() : std::string());
 }
 
 // The picture's file and its checkpoint.
@@ -43,7 +43,7 @@ class Target {
         : format(picture_format(file, options.width, options.height, chosen.save)),
           out(file, format.frame, format.srgb()), interval(chosen.checkpoint_interval),
           checkpoint_name(file.string() + ".checkpoint"),
-          identity([&] { return identity_of(scene, options, format, chosen.program); }) {
+          identity([&] { return identity_of(scene, options, format, chosen); }) {
         // Devices and pipes have nothing beside them.
         std::error_code ignored;
         if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored)) interval = 0;

@@ -41,7 +41,7 @@ int render(const Context& context) {
         {.save = {arguments.bits},
          .checkpoint_interval = arguments.checkpoint_interval,
          .resume = arguments.resume,
-         .program = program_key()},
+         .program = program_key},
         {context.console.progress("render", sample_count(options), " samples"), context.stop});
     context.console.clear_progress();
     if (!done.warning.empty()) context.console.warning(done.warning);

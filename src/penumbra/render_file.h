@@ -6,6 +6,7 @@
 #include "penumbra/watch.h"
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 namespace penumbra {
@@ -16,8 +17,9 @@ struct RenderFileOptions {
     /// "chair.png.checkpoint", which goes away with success. 0: none.
     double checkpoint_interval = 5;
     bool resume = false;  ///< go on from the checkpoint of an earlier, interrupted call
-    /// One line that changes with the program: another one's checkpoint is not used.
-    std::string program = {};
+    /// Gives one line that changes with the program: another one's checkpoint is not used. Asked
+    /// only once there is a checkpoint.
+    std::function<std::string()> program = {};
 };
 
 /// What render_file() has done, and the wall time of it.
