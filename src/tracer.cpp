@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <numeric>
 
 namespace penumbra {
 
@@ -42,8 +43,8 @@ struct Workspace {
     Hits hits;
     std::vector<Index> shapes;  // scratch
     Surfaces surfaces;
-    std::vector<std::uint64_t> order;  // of the rays that hit: a key and the ray
-    std::vector<std::size_t> ray_of;   // surface point -> ray
+    std::vector<std::uint64_t> order, sorted;  // of the rays that hit: a key and the ray
+    std::vector<std::size_t> ray_of;           // surface point -> ray
     Vectors radiance;
     LightWork light;
     std::vector<Vec3> pixels;  // of the tile
@@ -132,6 +133,21 @@ std::uint32_t place_on_curve(const Vec3& point, const Bounds& box) {
     return place;
 }
 
+// Orders entries by their upper half, of which 30 bits are in use: least significant digit first.
+void sort_by_key(std::vector<std::uint64_t>& entries, std::vector<std::uint64_t>& scratch) {
+    constexpr unsigned digit_bits = 10;
+    constexpr std::size_t digits = 1U << digit_bits;
+    scratch.resize(entries.size());
+    for (unsigned shift = 32; shift < 32 + 3 * digit_bits; shift += digit_bits) {
+        std::array<std::uint32_t, digits> place{};
+        const auto digit = [&](std::uint64_t entry) { return entry >> shift & (digits - 1); };
+        for (const std::uint64_t entry : entries) ++place[digit(entry)];
+        std::exclusive_scan(place.begin(), place.end(), place.begin(), 0U);
+        for (const std::uint64_t entry : entries) scratch[place[digit(entry)]++] = entry;
+        entries.swap(scratch);
+    }
+}
+
 // Lists the rays that hit something. What mirrors scatter is brought together again, so that blocks
 // of surface points stay small.
 void order_hits(const World& world, bool coherent, Workspace& work) {
@@ -149,7 +165,7 @@ void order_hits(const World& world, bool coherent, Workspace& work) {
                                  world.surroundings);
         work.order.push_back(key << 32U | i);
     }
-    if (!coherent) std::sort(work.order.begin(), work.order.end());
+    if (!coherent) sort_by_key(work.order, work.sorted);
 }
 
 void find_surfaces(const World& world, Workspace& work) {
