@@ -111,8 +111,9 @@ void check_asset(const nlohmann::json& root, const std::string& file, Losses& lo
 void check_schema(nlohmann::json& root, const std::string& file, Losses& losses);
 
 /// Checks that accessors lie in their buffer views and these in their buffers, and that the nodes
-/// form trees. Precondition: check_schema() passed. Throws Error (input).
-void check_layout(const nlohmann::json& root, const std::string& file);
+/// form trees; names accessors that are not aligned and nodes with two transforms. Precondition:
+/// check_schema() passed. Throws Error (input).
+void check_layout(const nlohmann::json& root, const std::string& file, Losses& losses);
 
 /// `text` on one line: control characters become '?', long texts are cut.
 std::string printable(std::string_view text);

@@ -6,11 +6,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace penumbra::gltf {
 namespace {
 
 using Numbers = std::vector<double>;
+using Times = std::vector<float>;
+
+// The key times of accessors that were read already: most channels have the same ones.
+using TimesByAccessor = std::map<int, Times>;
 
 // What the keys of a sampler hold.
 struct Track {
@@ -19,7 +24,7 @@ struct Track {
     std::string pointer;       // "/animations/0/samplers/1"
     std::size_t elements = 1;  // of the output accessor, for each value
     int components = 1;        // of an element
-    std::vector<float> times = {};
+    const Times* times = nullptr;
 
     [[noreturn]] void fail(const std::string& below, const std::string& problem) const {
         throw Error(Failure::input, document.place(pointer + below), problem);
@@ -47,13 +52,19 @@ Numbers Track::value(std::size_t key, std::size_t part) const {
 // The track of a sampler whose values have `elements` elements of accessor type `type`; 0 elements:
 // as many as the accessor has for each key.
 Track read_track(const Document& document, const tinygltf::AnimationSampler& sampler,
-                 const std::string& pointer, int type, std::size_t elements) {
+                 const std::string& pointer, int type, std::size_t elements,
+                 TimesByAccessor& known) {
     Track track = {.document = document, .sampler = sampler, .pointer = pointer};
     const tinygltf::Accessor& input = track.accessor(sampler.input);
     if (input.type != TINYGLTF_TYPE_SCALAR || input.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
         track.fail("/input", fmt::format("accessor {} must hold single floats", sampler.input));
-    resize_claimed(track.times, input.count, document.place(pointer));
-    read_floats(document, sampler.input, {.first = 0, .count = input.count}, 1, track.times.data());
+    const auto [times, fresh] = known.try_emplace(sampler.input);
+    track.times = &times->second;
+    if (fresh) {
+        resize_claimed(times->second, input.count, document.place(pointer));
+        read_floats(document, sampler.input, {.first = 0, .count = input.count}, 1,
+                    times->second.data());
+    }
 
     const tinygltf::Accessor& output = track.accessor(sampler.output);
     if (output.type != type)
@@ -96,15 +107,16 @@ Numbers line(const Track& track, std::size_t key, double t, bool rotation) {
 
 // Before the first key and after the last one the value stays.
 Numbers sample(const Track& track, double time, bool rotation) {
-    const auto after = std::upper_bound(track.times.begin(), track.times.end(), time,
+    const Times& times = *track.times;
+    const auto after = std::upper_bound(times.begin(), times.end(), time,
                                         [](double t, float key) { return t < double(key); });
-    if (after == track.times.begin()) return track.value(0, at_key);
-    const auto key = std::size_t(after - track.times.begin()) - 1;
-    if (after == track.times.end() || track.sampler.interpolation == "STEP")
+    if (after == times.begin()) return track.value(0, at_key);
+    const auto key = std::size_t(after - times.begin()) - 1;
+    if (after == times.end() || track.sampler.interpolation == "STEP")
         return track.value(key, at_key);
-    const double seconds = double(*after) - double(track.times[key]);
+    const double seconds = double(*after) - double(times[key]);
     if (!(seconds > 0)) return track.value(key, at_key);  // the times do not increase
-    const double t = std::clamp((time - double(track.times[key])) / seconds, 0.0, 1.0);
+    const double t = std::clamp((time - double(times[key])) / seconds, 0.0, 1.0);
     return track.cubic() ? spline(track, key, t, seconds) : line(track, key, t, rotation);
 }
 
@@ -115,11 +127,13 @@ struct Channel {
     const tinygltf::AnimationChannel& channel;
     std::string pointer;  // "/animations/0"
     double time;
+    TimesByAccessor& known;
 
     Numbers at_time(int type, std::size_t elements, bool rotation = false) const {
         const auto index = std::size_t(channel.sampler);
         return sample(read_track(reader.document, animation.samplers[index],
-                                 fmt::format("{}/samplers/{}", pointer, index), type, elements),
+                                 fmt::format("{}/samplers/{}", pointer, index), type, elements,
+                                 known),
                       time, rotation);
     }
     Vec3 vector() const {
@@ -167,9 +181,10 @@ void animate(Reader& reader, std::vector<Stance>& stances) {
     const tinygltf::Animation& animation = model.animations[*chosen];
     const std::string pointer = fmt::format("/animations/{}", *chosen);
     std::size_t pointers = 0;
+    TimesByAccessor known;
     for (const tinygltf::AnimationChannel& source : animation.channels) {
-        const Channel channel = {reader, animation, source, pointer,
-                                 reader.options.time.value_or(0)};
+        const Channel channel = {
+            reader, animation, source, pointer, reader.options.time.value_or(0), known};
         const auto node = std::size_t(source.target_node);
         // glTF 2.0, section 3.11: a channel without a node is for an extension.
         if (source.target_path == "pointer")

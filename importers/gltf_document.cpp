@@ -162,7 +162,7 @@ Document open_document(const std::filesystem::path& file, const ModelOptions& op
     json root = parse_json(parts.json, document.file, losses);
     check_asset(root, document.file, losses);
     check_schema(root, document.file, losses);
-    check_layout(root, document.file);
+    check_layout(root, document.file, losses);
     load_buffers(document, root, parts.bin);
     decode_meshopt(document, root);
     decode_draco(document, root, losses);

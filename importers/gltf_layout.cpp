@@ -39,6 +39,7 @@ std::uint64_t element_size(const std::string& type, std::uint64_t component) {
 struct Layout {
     const json& root;
     const std::string& file;
+    Losses& losses;
 
     [[noreturn]] void fail(const std::string& pointer, const std::string& problem) const {
         throw Error(Failure::input, file + '#' + pointer, problem);
@@ -74,8 +75,10 @@ struct Layout {
     }
 
     void accessors() const;
+    void alignment() const;
     void zeros() const;
     void trees() const;
+    void transforms() const;
 };
 
 // An accessor without a buffer view is all zeros, which costs its author no bytes.
@@ -108,6 +111,27 @@ void Layout::accessors() const {
         fits(at + "/sparse/indices", sparse["indices"], changed, component_size(type));
         fits(at + "/sparse/values", sparse["values"], changed, element);
     }
+}
+
+// glTF 2.0, section 3.6.2.4: a number begins at a multiple of its size. The first accessor where
+// one does not is named.
+void Layout::alignment() const {
+    std::string first;
+    std::size_t found = 0;
+    for (std::size_t i = 0; root.contains("accessors") && i < root["accessors"].size(); ++i) {
+        const json& accessor = root["accessors"][i];
+        if (!accessor.contains("bufferView")) continue;
+        const json& view = root["bufferViews"][size_at(accessor, "bufferView")];
+        const std::uint64_t component = component_size(size_at(accessor, "componentType"));
+        const std::uint64_t start = size_at(view, "byteOffset") + size_at(accessor, "byteOffset");
+        if (start % component == 0 && size_at(view, "byteStride") % component == 0) continue;
+        if (found++ == 0) first = fmt::format("/accessors/{}", i);
+    }
+    if (found == 0) return;
+    losses.push_back({file + '#' + first,
+                      fmt::format("its numbers do not begin at multiples of their size; they are "
+                                  "read from where they are said to be{}",
+                                  found > 1 ? fmt::format(" (in {} accessors)", found) : "")});
 }
 
 // They may be used as often as the author likes.
@@ -173,14 +197,28 @@ void Layout::trees() const {
         fail(fmt::format("/nodes/{}", lost - reached.begin()), "is its own ancestor");
 }
 
+// glTF 2.0, section 3.5.3: a node has a matrix or the others.
+void Layout::transforms() const {
+    for (std::size_t i = 0; root.contains("nodes") && i < root["nodes"].size(); ++i) {
+        const json& node = root["nodes"][i];
+        if (node.contains("matrix") &&
+            (node.contains("translation") || node.contains("rotation") || node.contains("scale")))
+            losses.push_back(
+                {fmt::format("{}#/nodes/{}", file, i),
+                 "it has a matrix and a translation, rotation or scale; the matrix is used"});
+    }
+}
+
 }  // namespace
 
-void check_layout(const json& root, const std::string& file) {
-    const Layout layout{root, file};
+void check_layout(const json& root, const std::string& file, Losses& losses) {
+    const Layout layout{root, file, losses};
     layout.views();
     layout.accessors();
+    layout.alignment();
     layout.zeros();
     layout.trees();
+    layout.transforms();
 }
 
 }  // namespace penumbra::gltf

@@ -1,5 +1,7 @@
 #include "model_folders.h"
 
+#include "file.h"
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -74,9 +76,7 @@ std::optional<Located> locate(const ModelFolders& folders, const fs::path& file)
 
 [[noreturn]] void fail(const fs::path& file, int error) {
     if (error == ENOENT) throw Error(Failure::input, file.string(), "no such file");
-    std::string why = std::generic_category().message(error);
-    if (!why.empty() && why[0] >= 'A' && why[0] <= 'Z') why[0] = char(why[0] - 'A' + 'a');
-    throw Error(Failure::input, file.string(), "cannot be opened: " + why);
+    throw Error(Failure::input, file.string(), "cannot be opened: " + system_reason(error));
 }
 
 // Step by step and through no link. Devices are not opened, for that alone may do something.

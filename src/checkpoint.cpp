@@ -18,18 +18,13 @@ namespace penumbra {
 
 namespace {
 
-// Before every piece. A piece is only as good as its sum: a process may be killed, and a disk fill
-// up, while it is being written.
-struct Piece {
-    std::uint64_t size = 0;
-    std::uint64_t sum = 0;
-};
-
-constexpr std::string_view magic = "penumbra checkpoint 1 ";
+constexpr std::string_view magic = "penumbra checkpoint 2 ";
 
 // Four lanes of FNV-1a by words: as fast as memory, where a CRC would cost more than the rest.
-std::uint64_t sum_of(std::span<const std::byte> bytes) {
-    std::array<std::uint64_t, 4> lanes = {1, 2, 3, 4}, words = {};
+std::uint64_t sum_of(const RowRange& rows, std::span<const std::byte> bytes) {
+    std::array<std::uint64_t, 4> lanes = {1, 2, std::uint64_t(rows.first),
+                                          std::uint64_t(rows.last)},
+                                 words = {};
     const auto mix = [&] {
         for (std::size_t i = 0; i < lanes.size(); ++i)
             lanes[i] = (lanes[i] ^ words[i]) * 0x100000001b3U;
@@ -48,8 +43,17 @@ std::uint64_t sum_of(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-Checkpoint::Checkpoint(std::filesystem::path name, const std::string& identity)
-    : file(std::move(name)), head(std::string(magic) + identity + "\n") {}
+// Before the samples of some rows. They are only as good as their sum: a process may be killed, and
+// a disk fill up, while they are being written.
+struct Checkpoint::Piece {
+    RowRange rows = {};
+    std::uint64_t sum = 0;
+};
+
+Checkpoint::Checkpoint(std::filesystem::path name, const std::string& identity, std::size_t row,
+                       int rows)
+    : file(std::move(name)), head(std::string(magic) + identity + "\n"), row_size(row),
+      height(rows) {}
 
 Checkpoint::~Checkpoint() { close(); }
 
@@ -80,30 +84,42 @@ bool Checkpoint::read(std::span<std::byte> to) const {
     return true;
 }
 
-bool Checkpoint::restore(const std::function<void(std::span<const std::byte>)>& take) {
+std::optional<Checkpoint::Piece> Checkpoint::read_piece(std::vector<std::byte>& samples) const {
+    Piece piece;
+    if (!read(std::as_writable_bytes(std::span(&piece, 1)))) return std::nullopt;
+    const RowRange& rows = piece.rows;
+    if (rows.first < 0 || rows.first % render_band != 0 || rows.last <= rows.first ||
+        rows.last > height)
+        return std::nullopt;
+    samples.resize(std::size_t(rows.last - rows.first) * row_size);
+    if (!read(samples) || sum_of(rows, samples) != piece.sum) return std::nullopt;
+    return piece;
+}
+
+std::optional<int> Checkpoint::open() {
     std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored)) return true;
-    if (!open_locked()) return false;
+    if (!std::filesystem::exists(file, ignored)) return 0;
+    if (!open_locked()) return std::nullopt;
     std::vector<std::byte> bytes(head.size());
     if (!read(bytes) || std::memcmp(bytes.data(), head.data(), head.size()) != 0) {
         close();
-        return false;
+        return std::nullopt;
     }
-    struct stat status {};
-    ::fstat(descriptor, &status);
-    off_t good = off_t(head.size());
-    Piece piece;
-    while (read(std::as_writable_bytes(std::span(&piece, 1)))) {
-        const auto end = std::uint64_t(good) + sizeof piece + piece.size;
-        if (piece.size > std::uint64_t(status.st_size) || end > std::uint64_t(status.st_size))
-            break;
-        bytes.resize(piece.size);
-        if (!read(bytes) || sum_of(bytes) != piece.sum) break;
-        take(bytes);
-        good = off_t(end);
+    if (const auto first = read_piece(bytes)) next = first->rows.first;
+    return next;
+}
+
+void Checkpoint::restore(const std::function<void(std::span<const std::byte>)>& take) {
+    auto good = off_t(head.size());
+    if (descriptor < 0 || ::lseek(descriptor, good, SEEK_SET) != good) return;
+    std::vector<std::byte> samples;
+    while (const auto piece = read_piece(samples)) {
+        if (piece->rows.first != next) break;
+        take(samples);
+        next = piece->rows.last;
+        good += off_t(sizeof(Piece) + samples.size());
     }
     if (::ftruncate(descriptor, good) != 0 || ::lseek(descriptor, good, SEEK_SET) != good) remove();
-    return true;
 }
 
 bool Checkpoint::is_ours() const {
@@ -120,10 +136,11 @@ bool Checkpoint::begin() {
            write_all(descriptor, std::as_bytes(std::span(head))) == 0;
 }
 
-bool Checkpoint::append(std::span<const std::byte> samples) {
+bool Checkpoint::append(const RowRange& rows, std::span<const std::byte> samples) {
     if (failed) return false;
-    const Piece piece = {.size = samples.size(), .sum = sum_of(samples)};
-    const bool open = descriptor >= 0 || begin();
+    const Piece piece = {.rows = rows, .sum = sum_of(rows, samples)};
+    const bool open = (descriptor >= 0 && rows.first == next) || begin();
+    next = rows.last;
     if (open && write_all(descriptor, std::as_bytes(std::span(&piece, 1))) == 0 &&
         write_all(descriptor, samples) == 0)
         return true;
@@ -136,7 +153,7 @@ bool Checkpoint::append(std::span<const std::byte> samples) {
 void Checkpoint::remove_stale(const std::filesystem::path& file) {
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(file, ignored)) return;
-    Checkpoint old(file, "");
+    Checkpoint old(file, "", 0, 0);
     if (!old.open_locked()) return;
     if (old.is_ours()) old.remove();
 }

@@ -1,4 +1,5 @@
 // Facets that lie exactly on one another: which of them a ray hits is a matter of rounding.
+#include "mixed.h"
 #include "parallel.h"
 
 #include "penumbra/scene.h"
@@ -18,17 +19,10 @@ struct Placed {
     Index instance = 0, facet = 0;
 };
 
-std::uint64_t mixed(std::uint64_t x) {
-    // SplitMix64's finaliser (Steele, Lea and Flood 2014).
-    x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9U;
-    x = (x ^ (x >> 27U)) * 0x94D049BB133111EBU;
-    return x ^ (x >> 31U);
-}
-
 std::uint64_t hash_of(const Vec3f& p) {
     std::uint64_t hash = 0;
     for (int axis = 0; axis < 3; ++axis)
-        hash = mixed(hash + 0x9E3779B97F4A7C15U + std::bit_cast<std::uint32_t>(p[axis] + 0.0F));
+        hash = mixed(hash + std::bit_cast<std::uint32_t>(p[axis] + 0.0F));
     return hash;
 }
 

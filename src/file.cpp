@@ -27,16 +27,9 @@ struct Descriptor {
     }
 };
 
-// The system's sentence, in lower case as the rest of our messages.
-std::string reason(int error) {
-    std::string text = std::generic_category().message(error);
-    if (text.size() > 1 && text[0] >= 'A' && text[0] <= 'Z' && text[1] >= 'a' && text[1] <= 'z')
-        text[0] = char(text[0] - 'A' + 'a');
-    return text;
-}
-
 [[noreturn]] void fail_input(const std::filesystem::path& file, int error) {
-    throw Error(Failure::input, file.string(), error == ENOENT ? "no such file" : reason(error));
+    throw Error(Failure::input, file.string(),
+                error == ENOENT ? "no such file" : system_reason(error));
 }
 
 [[noreturn]] void fail_output(const std::filesystem::path& file, int error) {
@@ -44,7 +37,7 @@ std::string reason(int error) {
     const bool homeless = error == ENOENT && file.has_parent_path() &&
                           !std::filesystem::exists(file.parent_path(), ignored);
     throw Error(Failure::output, file.string(),
-                homeless ? "its folder does not exist" : "cannot write: " + reason(error));
+                homeless ? "its folder does not exist" : "cannot write: " + system_reason(error));
 }
 
 // Bytes of Buffer (string or vector) are read straight into place.
@@ -145,6 +138,13 @@ struct NewFile {
 };
 
 }  // namespace
+
+std::string system_reason(int error) {
+    std::string text = std::generic_category().message(error);
+    if (text.size() > 1 && text[0] >= 'A' && text[0] <= 'Z' && text[1] >= 'a' && text[1] <= 'z')
+        text[0] = char(text[0] - 'A' + 'a');
+    return text;
+}
 
 void remove_stale(const std::filesystem::path& folder, const std::string& prefix) {
     namespace fs = std::filesystem;

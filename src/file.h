@@ -17,6 +17,9 @@ namespace penumbra {
 /// Largest file that is read; no model or picture in use comes near it.
 inline constexpr std::uintmax_t max_file_size = std::uintmax_t(4) << 30;
 
+/// The system's sentence for an errno, in lower case as the rest of our messages.
+std::string system_reason(int error);
+
 /// The content of a regular file. Throws Error (input): "FILE: no such file", "FILE: is a folder",
 /// "FILE: is not a regular file", "FILE: has N bytes, more than the M that are read", or the
 /// system's reason.

@@ -1,5 +1,7 @@
 #include "fingerprint.h"
 
+#include "mixed.h"
+
 #include <bit>
 #include <cstring>
 #include <span>
@@ -179,13 +181,7 @@ class Hasher {
     void add_all(const T&... values) {
         (add(values), ...);
     }
-    // SplitMix64's finaliser (Steele, Lea and Flood 2014).
-    void mix(std::uint64_t word) {
-        state = (state ^ word) + 0x9E3779B97F4A7C15U;
-        state = (state ^ (state >> 30U)) * 0xBF58476D1CE4E5B9U;
-        state = (state ^ (state >> 27U)) * 0x94D049BB133111EBU;
-        state ^= state >> 31U;
-    }
+    void mix(std::uint64_t word) { state = mixed(state ^ word); }
     void add_bytes(std::span<const std::byte> bytes) {
         mix(bytes.size());
         for (; bytes.size() >= 8; bytes = bytes.subspan(8)) {

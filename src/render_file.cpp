@@ -22,6 +22,9 @@ using Clock = std::chrono::steady_clock;
 // Samples that wait for the next checkpoint.
 constexpr std::size_t most_unsaved = std::size_t(32) << 20;
 
+// What writing is taken to cost before it was measured.
+constexpr double seconds_a_byte = 1e-9;
+
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -47,19 +50,38 @@ class Target {
         // Devices and pipes have nothing beside them.
         std::error_code ignored;
         if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored)) interval = 0;
-        if (chosen.resume) restore(options);
+        share = chosen.checkpoint_share;
+        if (chosen.resume) open_checkpoint();
     }
 
-    int restored_rows() const { return restored; }
+    /// Rows above the checkpoint's first one. They have to be rendered before restore().
+    int missing_rows() const { return missing; }
+    /// Takes the checkpoint's rows; returns the one behind them.
+    int restore() {
+        if (!checkpoint) return 0;
+        checkpoint->restore([&](std::span<const std::byte> rows) { out.append(rows); });
+        return unsaved_rows.first = unsaved_rows.last = checkpoint->end();
+    }
     const std::string& warning() const { return problem; }
 
-    void take(const Image& rows) {
+    /// Before restore() that is all.
+    void write(const Image& rows) {
         samples.clear();
         append_samples(rows.pixels, format, samples);
         out.append(samples);
+    }
+
+    void take(int first, const Image& rows) {
+        write(rows);
         if (interval <= 0) return;
+        unsaved_rows.last = first + rows.height;
         unsaved.insert(unsaved.end(), samples.begin(), samples.end());
-        if (unsaved.size() > most_unsaved || seconds_since(last_save) >= interval) save();
+        const bool full = unsaved.size() > most_unsaved;
+        if (!full && seconds_since(last_save) < interval) return;
+        if (may_save())
+            save();
+        else if (full)
+            forget();
     }
 
     /// What is finished is not lost, if it is worth a file.
@@ -79,36 +101,54 @@ class Target {
     PictureFormat format;
     SampleWriter out;
     double interval;
+    double share = 0;
     std::string checkpoint_name;
     std::function<std::string()> identity;  // takes a while
     std::optional<Checkpoint> checkpoint = {};
-    Clock::time_point last_save = Clock::now();
+    Clock::time_point start = Clock::now(), last_save = start;
+    double saving = 0;  // seconds
+    std::size_t saved = 0;
     std::vector<std::byte> samples = {}, unsaved = {};
-    int restored = 0;
+    RowRange unsaved_rows = {};
+    int missing = 0;
     std::string problem = {};
 
-    void restore(const RenderOptions& options) {
-        checkpoint.emplace(checkpoint_name, identity());
-        const std::size_t row = std::size_t(options.width) * std::size_t(format.frame.channels) *
-                                std::size_t(format.frame.depth);
-        std::size_t size = 0;
-        const bool usable = checkpoint->restore([&](std::span<const std::byte> rows) {
-            out.append(rows);
-            size += rows.size();
-        });
-        restored = int(size / row);
-        if (!usable)
+    void name_checkpoint() {
+        const Raster& frame = format.frame;
+        const std::size_t row =
+            std::size_t(frame.width) * std::size_t(frame.channels) * std::size_t(frame.depth);
+        checkpoint.emplace(checkpoint_name, identity(), row, frame.height);
+    }
+
+    void open_checkpoint() {
+        name_checkpoint();
+        if (const auto first = checkpoint->open())
+            missing = *first;
+        else
             problem = checkpoint_name +
                       ": is of another picture or in use; the picture is rendered from the start";
+    }
+
+    bool may_save() const {
+        const double each = saved > 0 ? saving / double(saved) : seconds_a_byte;
+        return saving + each * double(unsaved.size()) <= share * seconds_since(start);
+    }
+
+    void forget() {
+        unsaved.clear();
+        unsaved_rows.first = unsaved_rows.last;
     }
 
     void save() {
         last_save = Clock::now();
         if (unsaved.empty()) return;
-        if (!checkpoint) checkpoint.emplace(checkpoint_name, identity());
-        if (!checkpoint->append(unsaved) && problem.empty())
+        if (!checkpoint) name_checkpoint();
+        const Clock::time_point begin = Clock::now();
+        if (!checkpoint->append(unsaved_rows, unsaved) && problem.empty())
             problem = "no checkpoint can be written beside the picture";
-        unsaved.clear();
+        saving += seconds_since(begin);
+        saved += unsaved.size();
+        forget();
     }
 };
 
@@ -119,26 +159,31 @@ RenderedFile render_file(const NormalisedScene& scene, const RenderOptions& opti
                          const Watch& watch) {
     RenderedFile result;
     Target target(scene, options, file, chosen);
-    result.resumed_rows = target.restored_rows();
-    Clock::time_point start = Clock::now();
-    const auto progress = [&](double done) {
-        if (done == 0) {
-            result.build_seconds = seconds_since(start);
-            start = Clock::now();
-        }
-        if (watch.progress) watch.progress(done);
+    const auto render = [&](const RowRange& rows, const TakeRows& take) {
+        if (rows.first >= rows.last) return;
+        Clock::time_point start = Clock::now();
+        const auto progress = [&](double done) {
+            if (done == 0) {
+                result.build_seconds += seconds_since(start);
+                start = Clock::now();
+            }
+            if (watch.progress) watch.progress(done);
+        };
+        render_rows(scene, options, rows, take, {progress, watch.stop});
+        result.render_seconds += seconds_since(start);
     };
     try {
-        if (result.resumed_rows < options.height)
-            render_rows(scene, options, result.resumed_rows,
-                        [&](int, const Image& rows) { target.take(rows); }, {progress, watch.stop});
+        render({0, target.missing_rows()}, [&](int, const Image& rows) { target.write(rows); });
+        const int next = target.restore();
+        result.resumed_rows = next - target.missing_rows();
+        render({next, options.height},
+               [&](int first, const Image& rows) { target.take(first, rows); });
     } catch (const Error& error) {
         if (error.failure != Failure::interrupted) throw;
         target.interrupted();
         if (!target.has_checkpoint()) throw;
         throw Error(Failure::interrupted, "", "interrupted; --resume goes on from its checkpoint");
     }
-    result.render_seconds = seconds_since(start);
     result.warning = target.warning();
     target.finish();
     return result;

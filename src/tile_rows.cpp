@@ -17,13 +17,14 @@ int rows_in_memory(int width) {
 
 }  // namespace
 
-TileRows::TileRows(const RenderOptions& options, int first, const TakeRows& taker)
-    : width(options.width), height(options.height), given(first / tile_side * columns()),
-      handed(first / tile_side), finished(given), take(taker) {}
+TileRows::TileRows(const RenderOptions& options, const RowRange& range, const TakeRows& taker)
+    : width(options.width), height(options.height), last(range.last),
+      given(range.first / tile_side * columns()), handed(range.first / tile_side), finished(given),
+      take(taker) {}
 
 int TileRows::columns() const { return (width + tile_side - 1) / tile_side; }
 
-int TileRows::row_count() const { return (height + tile_side - 1) / tile_side; }
+int TileRows::row_count() const { return (last + tile_side - 1) / tile_side; }
 
 std::optional<TileRows::Work> TileRows::next() {
     std::unique_lock lock(mutex);
@@ -45,7 +46,8 @@ double TileRows::finish(const Tile& tile) {
     --rows.at(tile.y / tile_side).unfinished;
     ++finished;
     hand_over(lock);
-    return double(finished) / double(row_count() * columns());
+    const int all = (height + tile_side - 1) / tile_side * columns();
+    return double(finished) / double(all);
 }
 
 // One thread does so; the others go on.

@@ -24,8 +24,7 @@ struct Tile {
 /// that order. Few are in memory at a time.
 class TileRows {
   public:
-    /// `first` is a multiple of tile_side.
-    TileRows(const RenderOptions& options, int first, const TakeRows& take);
+    TileRows(const RenderOptions& options, const RowRange& range, const TakeRows& take);
 
     /// The next tile and the rows that it lies in; none at the end and after stop(). Waits for the
     /// others where too much would be in memory.
@@ -47,10 +46,10 @@ class TileRows {
         int unfinished = 0;  ///< tiles
     };
     int columns() const;
-    int row_count() const;
+    int row_count() const;  ///< of tiles, above and in the range
     void hand_over(std::unique_lock<std::mutex>& lock);
 
-    int width, height;
+    int width, height, last;
     int given;         ///< tiles; those above the first are as if they were finished
     int handed;        ///< rows of tiles
     int finished = 0;  ///< tiles

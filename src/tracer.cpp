@@ -232,8 +232,8 @@ void work_on(const Job& job, const Watch& watch, std::mutex& reporting, TileRows
     }
 }
 
-void render_tiles(const Job& job, int first, const TakeRows& take, const Watch& watch) {
-    TileRows tiles(job.options, first, take);
+void render_tiles(const Job& job, const RowRange& rows, const TakeRows& take, const Watch& watch) {
+    TileRows tiles(job.options, rows, take);
     std::mutex reporting;
     const int threads = tbb::this_task_arena::max_concurrency();
     tbb::parallel_for(
@@ -251,7 +251,8 @@ void render_tiles(const Job& job, int first, const TakeRows& take, const Watch& 
 }
 
 void render_from(const NormalisedScene& normalised, const RenderOptions& options,
-                 const Variation& variation, int first, const TakeRows& take, const Watch& watch) {
+                 const Variation& variation, const RowRange& rows, const TakeRows& take,
+                 const Watch& watch) {
     const Scene& scene = normalised.scene;
     tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
     arena.execute([&] {
@@ -261,7 +262,7 @@ void render_from(const NormalisedScene& normalised, const RenderOptions& options
         const Job job = {world, view, options, pixel_samples(options.samples, variation),
                          interiors_at(world, view.location)};
         if (watch.progress) watch.progress(0);
-        render_tiles(job, first, take, watch);
+        render_tiles(job, rows, take, watch);
     });
 }
 
@@ -277,13 +278,13 @@ Image render_variation(const NormalisedScene& normalised, const RenderOptions& o
     const auto take = [&](int first, const Image& rows) {
         std::ranges::copy(rows.pixels, &image.at(0, first));
     };
-    render_from(normalised, options, variation, 0, take, watch);
+    render_from(normalised, options, variation, {0, options.height}, take, watch);
     return image;
 }
 
-void render_rows(const NormalisedScene& scene, const RenderOptions& options, int first,
+void render_rows(const NormalisedScene& scene, const RenderOptions& options, const RowRange& rows,
                  const TakeRows& take, const Watch& watch) {
-    render_from(scene, options, {}, first, take, watch);
+    render_from(scene, options, {}, rows, take, watch);
 }
 
 }  // namespace penumbra

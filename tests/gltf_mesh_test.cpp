@@ -1,6 +1,8 @@
 // Accessors and primitives of glTF.
 #include "gltf_builder.h"
 
+#include <cstring>
+
 using namespace penumbra;
 using test::Gltf;
 using test::json;
@@ -135,6 +137,22 @@ TEST_CASE("glTF meshes, follow strides and offsets") {
     const Mesh mesh = only_mesh(gltf);
     CHECK(mesh.positions == std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
     CHECK(mesh.normals == std::vector<Vec3f>(3, Vec3f(0, 0, 1)));  // made unit
+}
+
+TEST_CASE("glTF meshes, read numbers that are not aligned and say so") {
+    Gltf gltf = test::triangle();
+    const std::vector<float> positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    std::vector<std::uint8_t> bytes(3 + sizeof(float) * positions.size());
+    std::memcpy(bytes.data() + 3, positions.data(), sizeof(float) * positions.size());
+    json& accessor = gltf.root["accessors"][0];
+    accessor["bufferView"] = gltf.view(bytes);
+    accessor["byteOffset"] = 3;
+    const Imported imported = read(gltf);
+    CHECK(imported.scene.meshes.at(0).positions ==
+          std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    CHECK(imported.losses ==
+          Losses{{"box.gltf#/accessors/0", "its numbers do not begin at multiples of their size; "
+                                           "they are read from where they are said to be"}});
 }
 
 TEST_CASE("glTF meshes, apply sparse accessors") {

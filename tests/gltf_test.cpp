@@ -180,6 +180,12 @@ TEST_CASE("glTF, repairs transforms and says so") {
     check_near(Vec3(1, 0, 0) * projective.scene.instances.at(0).transform, Vec3(8, 0, 0));
     CHECK(projective.losses ==
           Losses{{"box.gltf#/nodes/0/matrix", "its last row is not 0 0 0 1; it is taken as such"}});
+    gltf.root["nodes"][0]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 7, 0, 0, 1};
+    gltf.root["nodes"][0]["translation"] = {0, 5, 0};
+    const Imported doubled = read(gltf);
+    check_near(Vec3(1, 0, 0) * doubled.scene.instances.at(0).transform, Vec3(8, 0, 0));
+    CHECK(doubled.losses == Losses{{"box.gltf#/nodes/0", "it has a matrix and a translation, "
+                                                         "rotation or scale; the matrix is used"}});
 }
 
 TEST_CASE("glTF, reads cameras") {

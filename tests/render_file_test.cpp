@@ -27,6 +27,7 @@ NormalisedScene mirror_scene() {
 }
 
 constexpr RenderOptions small = {.width = 70, .height = 150};
+const RenderFileOptions often = {.checkpoint_interval = 1e-9, .checkpoint_share = 1e9};
 
 // Stops the rendering once that share is done.
 RenderedFile interrupt_at(double share, const fs::path& file, RenderFileOptions options,
@@ -40,8 +41,7 @@ RenderedFile interrupt_at(double share, const fs::path& file, RenderFileOptions 
 
 // Leaves a checkpoint of about half a picture.
 void leave_checkpoint(const fs::path& file, const NormalisedScene& scene) {
-    const std::string message =
-        test::message_of([&] { interrupt_at(0.5, file, {.checkpoint_interval = 1e-9}, scene); });
+    const std::string message = test::message_of([&] { interrupt_at(0.5, file, often, scene); });
     CHECK(message == "interrupted; --resume goes on from its checkpoint");
     CHECK_FALSE(fs::exists(file));
     REQUIRE(fs::exists(file.string() + ".checkpoint"));
@@ -74,7 +74,7 @@ TEST_CASE("render_rows, gives the same rows from any band on") {
     const Image whole = render(scene, small);
     for (const int first : {0, render_band, 4 * render_band}) {
         int next = first;
-        render_rows(scene, small, first, [&](int row, const Image& rows) {
+        render_rows(scene, small, {first, small.height}, [&](int row, const Image& rows) {
             CHECK(row == next);
             next += rows.height;
             for (int y = 0; y < rows.height; ++y)
@@ -90,7 +90,9 @@ TEST_CASE("render_rows, ends with what its receiver throws") {
     for (const int threads : {1, 2}) {
         RenderOptions options = small;
         options.threads = threads;
-        CHECK(test::message_of([&] { render_rows(scene, options, 0, full); }) == "disk: is full");
+        CHECK(test::message_of([&] {
+                  render_rows(scene, options, {0, options.height}, full);
+              }) == "disk: is full");
     }
 }
 
@@ -133,7 +135,27 @@ TEST_CASE("what is damaged in a checkpoint is rendered again") {
     changed[whole.size() - band / 2] = char(changed[whole.size() - band / 2] + 1);
     CHECK(resumed_rows(changed) < all);
     CHECK(resumed_rows("") == 0);
-    CHECK(resumed_rows("penumbra checkpoint 1 of another picture\n") == 0);
+    CHECK(resumed_rows("penumbra checkpoint 2 of another picture\n") == 0);
+}
+
+TEST_CASE("rows that come faster than they can be kept are rendered again") {
+    const TempDir folder;
+    const NormalisedScene scene = mirror_scene();
+    const RenderOptions large = {.width = 1100, .height = 6000};
+    const fs::path file = folder / "a.hdr";  // of 79 MB, more than what waits for a checkpoint
+    std::stop_source source;
+    const auto progress = [&](double done) {
+        if (done >= 0.98) source.request_stop();
+    };
+    CHECK(test::message_of([&] {
+              render_file(scene, large, file, {.checkpoint_interval = 1e-9, .checkpoint_share = 0},
+                          {progress, source.get_token()});
+          }) == "interrupted; --resume goes on from its checkpoint");
+    const RenderedFile done = render_file(scene, large, file, {.resume = true});
+    CHECK(done.resumed_rows >= render_band);
+    CHECK(done.resumed_rows < 3000);
+    render_file(scene, large, folder / "b.hdr");
+    CHECK(test::read(file) == test::read(folder / "b.hdr"));
 }
 
 TEST_CASE("somebody else's file is no checkpoint") {
@@ -141,8 +163,7 @@ TEST_CASE("somebody else's file is no checkpoint") {
     test::write(folder / "a.png.checkpoint", "notes");
     render_file(mirror_scene(), small, folder / "a.png", {.resume = true});
     CHECK(test::read(folder / "a.png.checkpoint") == "notes");
-    const RenderedFile done =
-        render_file(mirror_scene(), small, folder / "a.png", {.checkpoint_interval = 1e-9});
+    const RenderedFile done = render_file(mirror_scene(), small, folder / "a.png", often);
     CHECK(done.warning == "no checkpoint can be written beside the picture");
     CHECK(test::read(folder / "a.png.checkpoint") == "notes");
 }

@@ -304,7 +304,7 @@ PovrayRun run_povray(const fs::path& ini, int width, int height, const PovrayOpt
     if (options.threads > 0) command.argv.push_back(fmt::format("+WT{}", options.threads));
     command.folder = fs::absolute(ini).parent_path();
     command.timeout = options.timeout;
-    command.memory = memory_limit();
+    command.memory = options.memory > 0 ? options.memory : memory_limit();
     command.stop = watch.stop;
     const double full = render_state_size(width, height);
     if (watch.progress)

@@ -4,8 +4,6 @@
 #include "validation/process.h"
 #include "values.h"
 
-#include "penumbra/limits.h"
-
 #include <fmt/format.h>
 
 #include <cstring>
@@ -72,7 +70,7 @@ std::string last_line(const std::string& text) {
         throw Error(Failure::povray, renderer.name,
                     fmt::format("needs more than the {} of memory that it may use (allow it more "
                                 "with --max-memory){}",
-                                memory_text(memory_limit()), why));
+                                memory_text(input.memory), why));
     switch (finished.how) {
     case Finished::How::stopped: throw Error(Failure::interrupted, "", "interrupted");
     case Finished::How::timed_out:
@@ -118,7 +116,7 @@ OtherPicture run_renderer(const OtherRenderer& renderer, const RendererInput& in
     command.argv = filled(renderer, input, result.file, extension);
     command.folder = fs::absolute(input.folder);
     command.timeout = input.timeout;
-    command.memory = memory_limit();
+    command.memory = input.memory;
     command.stop = watch.stop;
     result.command = command.argv;
     const fs::path program = command.argv.empty() ? fs::path() : find_program(command.argv.front());

@@ -14,6 +14,7 @@ struct RendererInput {
     std::filesystem::path folder = {};              ///< where it runs and leaves its picture
     int width = 0, height = 0;
     std::chrono::seconds timeout{600};
+    std::size_t memory = 0;  ///< bytes that it may take
 };
 
 struct OtherPicture {

@@ -111,6 +111,7 @@ class SceneRun {
         Case& own = cases[0];
         PovrayOptions povray = context.arguments.povray;
         povray.threads = job.threads;
+        povray.memory = job.memory;
         povray.keep_exr = false;  // ours is of the raw pixels
         std::function<void(double)> progress;
         if (!job.quiet)
@@ -146,7 +147,8 @@ class SceneRun {
                                                  .folder = report.path() / other.folder,
                                                  .width = prepared.options.width,
                                                  .height = prepared.options.height,
-                                                 .timeout = context.arguments.povray.timeout},
+                                                 .timeout = context.arguments.povray.timeout,
+                                                 .memory = job.memory},
                                                 {.stop = context.stop});
             other.reference = std::move(picture.image);
             other.povray_log = std::move(picture.log);

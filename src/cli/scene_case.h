@@ -17,6 +17,7 @@ struct SceneJob {
     std::vector<std::string> words = {};  ///< the command that validates it alone
     std::string povray = {};              ///< its version
     int threads = 0;                      ///< 0: all
+    std::size_t memory = 0;               ///< bytes that each other renderer may take
     bool quiet = false;                   ///< no progress bars
 };
 

@@ -4,6 +4,8 @@
 #include "steps.h"
 #include "values.h"
 
+#include "penumbra/limits.h"
+
 #include <algorithm>
 #include <thread>
 
@@ -78,7 +80,10 @@ std::vector<SceneJob> scenes_of(const Arguments& arguments) {
     }
     const int all = arguments.threads > 0 ? arguments.threads
                                           : int(std::max(1U, std::thread::hardware_concurrency()));
+    const std::size_t at_once =
+        std::max(std::min(std::size_t(arguments.jobs), jobs.size()), std::size_t(1));
     for (SceneJob& job : jobs) {
+        job.memory = memory_limit() / at_once;
         job.threads = arguments.jobs > 1 ? std::max(1, all / arguments.jobs) : arguments.threads;
         job.quiet = arguments.jobs > 1;
     }

@@ -48,9 +48,10 @@ std::string format_of(std::span<const std::byte> file, const std::string& extens
     if (text.size() > 2 && text[0] == 'P' &&
         ((text[1] >= '1' && text[1] <= '7') || text[1] == 'f' || text[1] == 'F'))
         return "pnm";
-    // Not .iff: OpenImageIO 2.4 writes beyond its memory when such a file is damaged.
-    constexpr std::array others = {".tga", ".tpic", ".ico", ".sgi",  ".rgb",  ".rgba", ".bw",
-                                   ".dpx", ".cin",  ".rla", ".heic", ".heif", ".avif"};
+    // Formats of textures and renderings only; each reader is a way in. Not .iff: OpenImageIO 2.4
+    // writes beyond its memory when such a file is damaged.
+    constexpr std::array others = {".tga", ".tpic", ".sgi",  ".rgb", ".rgba",
+                                   ".bw",  ".heic", ".heif", ".avif"};
     const auto other = std::find(others.begin(), others.end(), extension);
     return other == others.end() ? "" : extension.substr(1);
 }

@@ -20,8 +20,7 @@ struct Image {
     std::vector<Color> pixels = {};  ///< width * height
 
     Image() = default;
-    Image(int w, int h)
-        : width(w), height(h), pixels(std::size_t(w) * std::size_t(h), Color(0)) {}
+    Image(int w, int h) : width(w), height(h), pixels(std::size_t(w) * std::size_t(h), Color(0)) {}
 
     Color& at(int x, int y) { return pixels[std::size_t(y) * std::size_t(width) + std::size_t(x)]; }
     const Color& at(int x, int y) const {

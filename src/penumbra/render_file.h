@@ -16,6 +16,9 @@ struct RenderFileOptions {
     /// Seconds between checkpoints: what is finished is kept in a file beside the picture's,
     /// "chair.png.checkpoint", which goes away with success. 0: none.
     double checkpoint_interval = 5;
+    /// The most of the time that checkpoints may take. Rows that come faster are not kept and
+    /// rendered again, which takes less than 1 / share times as long as keeping them.
+    double checkpoint_share = 0.01;
     bool resume = false;  ///< go on from the checkpoint of an earlier, interrupted call
     /// Gives one line that changes with the program: another one's checkpoint is not used. Asked
     /// only once there is a checkpoint.

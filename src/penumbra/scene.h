@@ -8,12 +8,11 @@
 // The light that leaves a surface towards the eye (the light model of POV-Ray 3.7):
 //   P (K_A Ia) + E + sum over virtual sources of f_a Ip (P K_D N.L + M K_S (R.V)^N) + K_R reflected
 // where P is the pigment (color x texture x vertex colour, or a pattern), N is turned toward the
-// eye, R is the mirrored eye ray, and M = 1 + metallic (1 - F)(P - 1) with POV-Ray's curve F; beside
-// a texture, vertex colours are left out of M.
-// With opacity a < 1 the ambient, emitted and diffuse terms are scaled by a; of what lies behind,
-// (1 - a)(1 - t + t P) is added, t being the transmission; highlights and reflection are not
-// scaled. Material::coverage fades everything, as a hole does. Shadow rays are filtered by the same
-// factors.
+// eye, R is the mirrored eye ray, and M = 1 + metallic (1 - F)(P - 1) with POV-Ray's curve F;
+// beside a texture, vertex colours are left out of M. With opacity a < 1 the ambient, emitted and
+// diffuse terms are scaled by a; of what lies behind, (1 - a)(1 - t + t P) is added, t being the
+// transmission; highlights and reflection are not scaled. Material::coverage fades everything, as a
+// hole does. Shadow rays are filtered by the same factors.
 #pragma once
 
 #include "penumbra/error.h"
@@ -75,8 +74,8 @@ using Pattern = std::variant<std::monostate, ImageMap, Checker, Noise>;
 /// An image whose first channel says how much of a mesh is there: with c in [0, 1] the surface is
 /// mixed from its own look (c) and from nothing at all (1 - c), highlights and mirror included.
 /// With a cutoff it is there where c >= cutoff, and nowhere else. The texture is linear. Without a
-/// cutoff c is multiplied by Mesh::alphas, and vertex colours are interpolated with these as weights
-/// (premultiplied), as POV-Ray mixes the textures of vertices.
+/// cutoff c is multiplied by Mesh::alphas, and vertex colours are interpolated with these as
+/// weights (premultiplied), as POV-Ray mixes the textures of vertices.
 struct Coverage {
     ImageMap map = {};  ///< no texture: 1 everywhere
     std::optional<float> cutoff = {};
@@ -283,9 +282,9 @@ std::size_t facet_count(const Scene& scene);
 /// three sources sized to the bounds. `aspect` is width / height.
 void complete(Scene& scene, double aspect);
 
-/// Gives `mesh` the tangents that a normal map at `map` needs: per vertex, in the direction in which
-/// u' of the map grows. The bitangent points to where v' grows, that is up in the image, as green
-/// does in glTF's normal maps, whose v runs down but whose y is up (glTF 2.0, section 3.9.3).
+/// Gives `mesh` the tangents that a normal map at `map` needs: per vertex, in the direction in
+/// which u' of the map grows. The bitangent points to where v' grows, that is up in the image, as
+/// green does in glTF's normal maps, whose v runs down but whose y is up (glTF 2.0, section 3.9.3).
 /// Weighs facets by their angle at the vertex, as MikkTSpace does; vertices where facets of both
 /// handednesses meet are split. A mesh without normals gets those of its facets first, each facet
 /// then having vertices of its own. Does nothing to a mesh without texture coordinates.
@@ -311,8 +310,9 @@ Losses bake_normal_maps(Scene& scene, const NormalMapBudget& budget = {});
 /// Removes all normal maps; a loss for each material.
 Losses drop_normal_maps(Scene& scene);
 
-/// Of opaque facets that lie exactly on one another leaves the first: which of them a ray hits would
-/// be a matter of rounding. Meshes that several instances share stay whole. Returns how many went.
+/// Of opaque facets that lie exactly on one another leaves the first: which of them a ray hits
+/// would be a matter of rounding. Meshes that several instances share stay whole. Returns how many
+/// went.
 std::size_t drop_coincident_facets(Scene& scene);
 
 // ---- what the tracer and the exporters share --------------------------------------------------

@@ -21,10 +21,15 @@ using TakeRows = std::function<void(int first, const Image& rows)>;
 /// Pictures are rendered in bands of so many rows, whatever is done with them.
 inline constexpr int render_band = 32;
 
-/// The same picture from row `first` on, a multiple of render_band, without ever being in memory as
-/// a whole: calls `take` for finished bands from the top, one at a time, on any thread. What it
-/// throws ends the rendering. Throws Error (interrupted).
-void render_rows(const NormalisedScene& scene, const RenderOptions& options, int first,
+/// [first, last) of a picture's rows: multiples of render_band, or the picture's end.
+struct RowRange {
+    int first = 0, last = 0;
+};
+
+/// Some rows of the same picture, without ever being in memory as a whole: calls `take` for
+/// finished bands from the top, one at a time, on any thread. What it throws ends the rendering.
+/// Throws Error (interrupted).
+void render_rows(const NormalisedScene& scene, const RenderOptions& options, const RowRange& rows,
                  const TakeRows& take, const Watch& watch = {});
 
 /// What the ray through the centre of each pixel hits, row by row from the top: objects are counted

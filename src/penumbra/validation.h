@@ -26,7 +26,7 @@ struct Metric {
     std::string name = {};  ///< "parity", "exactness", "ssim", ...
     double value = 0;
     std::optional<double> limit = {};
-    bool at_least = true;   ///< the limit is a minimum (else a maximum)
+    bool at_least = true;  ///< the limit is a minimum (else a maximum)
     /// A maximum limits the magnitude: `bias` has a sign.
     bool ok() const { return !limit || (at_least ? value >= *limit : std::abs(value) <= *limit); }
 };
@@ -36,7 +36,10 @@ struct Metric {
 struct Limits {
     double warn_band = 0.2;
     std::map<std::string, double> limits = {  ///< by metric name
-        {"parity", 0.995}, {"ssim", 0.99}, {"flip", 0.01}, {"flip_tile", 0.045}};
+        {"parity", 0.995},
+        {"ssim", 0.99},
+        {"flip", 0.01},
+        {"flip_tile", 0.045}};
 };
 
 /// The limits of a named profile: "strict", "equivalent" or "similar". Throws Error (usage).
@@ -55,13 +58,13 @@ struct Tile {
 
 struct Comparison {
     Verdict verdict = Verdict::error;
-    std::vector<Metric> metrics = {};        ///< in a fixed order
-    PixelPair worst = {};                    ///< where the largest linear channel difference is
-    std::vector<Tile> worst_tiles = {};      ///< at most 4 of 16 pixels, apart, the worst first
-    std::vector<std::string> diagnosis = {}; ///< sentences: why it differs or cannot be compared
-    std::string cause = {};                  ///< "shift", "gain", ... (docs/validation.md); "": unknown
-    Image flip_map = {};                     ///< FLIP error per pixel, in all three channels
-    double warn_band = 0.2;                  ///< of the limits in force
+    std::vector<Metric> metrics = {};         ///< in a fixed order
+    PixelPair worst = {};                     ///< where the largest linear channel difference is
+    std::vector<Tile> worst_tiles = {};       ///< at most 4 of 16 pixels, apart, the worst first
+    std::vector<std::string> diagnosis = {};  ///< sentences: why it differs or cannot be compared
+    std::string cause = {};  ///< "shift", "gain", ... (docs/validation.md); "": unknown
+    Image flip_map = {};     ///< FLIP error per pixel, in all three channels
+    double warn_band = 0.2;  ///< of the limits in force
 
     /// The metric of that name; NaN when there is none.
     double value(const std::string& name) const;
@@ -74,9 +77,10 @@ struct PixelBox {
 
 struct CompareOptions {
     Limits limits = {};
-    std::optional<Color> background = {};  ///< for coverage; the most frequent border colour if absent
-    Image mask = {};                       ///< black pixels are ignored; empty: none. Same size as the pictures
-    std::vector<PixelBox> ignored = {};    ///< pixels that are ignored
+    std::optional<Color> background =
+        {};           ///< for coverage; the most frequent border colour if absent
+    Image mask = {};  ///< black pixels are ignored; empty: none. Same size as the pictures
+    std::vector<PixelBox> ignored = {};  ///< pixels that are ignored
     int shift_tolerance = 0;  ///< pixels: parity accepts the colour of any pixel that is so near
     double exposure = 0;      ///< EV: both pictures are brightened by 2^EV before they are encoded
 };
@@ -91,8 +95,9 @@ Image masked_reference(const Image& test, Image reference, const CompareOptions&
 
 /// What the scene that `test` was rendered from tells of a comparison that failed: it is rendered
 /// with one thing changed at a time (no shadows, no highlights, another field of view, an object
-/// missing, ...), and what brings it close to `reference` is the cause. Replaces comparison.cause and
-/// adds a sentence when one explains more than the pictures alone do. Throws Error (interrupted).
+/// missing, ...), and what brings it close to `reference` is the cause. Replaces comparison.cause
+/// and adds a sentence when one explains more than the pictures alone do. Throws Error
+/// (interrupted).
 void explain(const NormalisedScene& scene, const RenderOptions& options, const Image& test,
              const Image& reference, Comparison& comparison, const Watch& watch = {});
 
@@ -110,16 +115,17 @@ struct PovrayOptions {
     std::string binary = {};  ///< empty: PENUMBRA_POVRAY, else "povray" found in PATH
     int threads = 0;          ///< 0: as many as the machine has
     std::chrono::seconds timeout{600};
-    bool keep_exr = true;     ///< keep the file that POV-Ray itself writes
+    std::size_t memory = 0;  ///< bytes that it may take; 0: memory_limit()
+    bool keep_exr = true;    ///< keep the file that POV-Ray itself writes
 };
 
 struct PovrayRun {
-    Image image = {};                         ///< its raw float32 pixels
-    std::string log = {};                     ///< what it printed
-    std::vector<std::string> command = {};    ///< the argument vector
-    std::filesystem::path folder = {};        ///< where it ran
-    double seconds = 0;                       ///< wall time
-    double cpu_seconds = 0;                   ///< user + system
+    Image image = {};                       ///< its raw float32 pixels
+    std::string log = {};                   ///< what it printed
+    std::vector<std::string> command = {};  ///< the argument vector
+    std::filesystem::path folder = {};      ///< where it ran
+    double seconds = 0;                     ///< wall time
+    double cpu_seconds = 0;                 ///< user + system
 };
 
 /// Runs POV-Ray on an .ini that write_pov() wrote, as a child process without a shell, in the
@@ -139,12 +145,12 @@ struct Case {
     std::string test_name = "penumbra", reference_name = "POV-Ray";
     Image test = {}, reference = {};
     Losses losses = {};
-    std::map<std::string, double> seconds = {};      ///< import, render, export, povray, compare
-    std::vector<std::string> commands = {};          ///< that repeat it
-    std::map<std::string, std::string> files = {};   ///< role -> path relative to the report
+    std::map<std::string, double> seconds = {};     ///< import, render, export, povray, compare
+    std::vector<std::string> commands = {};         ///< that repeat it
+    std::map<std::string, std::string> files = {};  ///< role -> path relative to the report
     std::string povray_log = {};
-    std::string message = {};                        ///< of a case that ended in an error
-    bool cached = false;                             ///< taken from an earlier run
+    std::string message = {};  ///< of a case that ended in an error
+    bool cached = false;       ///< taken from an earlier run
 };
 
 /// The documented JSON document: {"version": 1, "cases": [...]} (docs/report.schema.json).
