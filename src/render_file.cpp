@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 // Samples that wait for the next checkpoint.
-constexpr std::size_t most_unsaved = std::size_t(32) << 20;
+constexpr std::size_t most_unsaved = std::size_t(8) << 20;
 
 // What writing is taken to cost before it was measured.
 constexpr double seconds_a_byte = 1e-9;
