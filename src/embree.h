@@ -14,8 +14,8 @@
 
 namespace penumbra::embree {
 
-/// Lets the device ask before it takes memory: see penumbra/limits.h.
-void watch_memory(RTCDevice device);
+/// A device that asks before it takes memory: see penumbra/limits.h.
+RTCDevice new_device();
 
 /// Throws what the device could not do: MemoryError (input) where it was refused memory.
 void check(RTCDevice device);

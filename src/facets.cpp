@@ -91,11 +91,11 @@ Vec3 PlacedMesh::normal_to_world(const Vec3& n) const {
 }
 
 struct Facets::Device {
-    RTCDevice device = rtcNewDevice(nullptr);
+    RTCDevice device = embree::new_device();
     RTCScene scene = rtcNewScene(device);
     std::vector<RTCScene> shared = {};  // one for each mesh with several instances
 
-    Device() { embree::watch_memory(device); }
+    Device() = default;
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
     ~Device() {
