@@ -115,6 +115,26 @@ TEST_CASE("POV-Ray's pixels come as its own float32 values") {
     for (const double done : progress) CHECK((done >= 0 && done <= 1));
 }
 
+TEST_CASE("The user's settings of POV-Ray do not change the picture") {
+    if (!has_povray()) PENUMBRA_SKIP("POV-Ray is not installed");
+    const TempDir folder, home;
+    test::fs::create_directories(home / ".povray/3.7");
+    // Bare pigments with all light; antialiased, so that the wall's edge is mixed.
+    test::write(home / ".povray/3.7/povray.ini", "Quality=0\nAntialias=On\nStart_Row=20\n");
+    test::write(home / "other.ini", "Antialias=On\n");
+    const auto ini = scene(folder, wall, "65");
+    const Image expected = run_povray(ini, 65, 65).image;
+    const std::string before = std::getenv("HOME") ? std::getenv("HOME") : "/";
+    setenv("HOME", home.path.c_str(), 1);
+    const Image personal = run_povray(ini, 65, 65).image;
+    setenv("POVINI", (home / "other.ini").c_str(), 1);
+    const Image named = run_povray(ini, 65, 65).image;
+    setenv("HOME", before.c_str(), 1);
+    unsetenv("POVINI");
+    CHECK(personal.pixels == expected.pixels);
+    CHECK(named.pixels == expected.pixels);
+}
+
 TEST_CASE("POV-Ray's own file can be dropped, and any file name works") {
     if (!has_povray()) PENUMBRA_SKIP("POV-Ray is not installed");
     const TempDir folder;
@@ -306,6 +326,19 @@ TEST_CASE("A program reads nothing, runs in its folder and gets its arguments as
     const Finished finished = run(command);
     CHECK(finished.output == command.folder.string() + "\na b|$HOME|'\"*|");
     CHECK(finished.code == 7);
+}
+
+TEST_CASE("A program gets its own variables") {
+    const TempDir folder;
+    setenv("PENUMBRA_TEST_GONE", "1", 1);
+    setenv("PENUMBRA_TEST_KEPT", "2", 1);
+    Command command;
+    command.argv = {
+        script(folder, "echo $PENUMBRA_TEST_GONE,$PENUMBRA_TEST_KEPT,$HOME\n").string()};
+    command.environment = {{"PENUMBRA_TEST_GONE", ""}, {"HOME", "/a b"}};
+    CHECK(run(command).output == ",2,/a b\n");
+    unsetenv("PENUMBRA_TEST_GONE");
+    unsetenv("PENUMBRA_TEST_KEPT");
 }
 
 TEST_CASE("The picture file serves when there is no render-state file") {

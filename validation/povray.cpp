@@ -303,6 +303,9 @@ PovrayRun run_povray(const fs::path& ini, int width, int height, const PovrayOpt
     command.argv = {program.string(), name.name};
     if (options.threads > 0) command.argv.push_back(fmt::format("+WT{}", options.threads));
     command.folder = fs::absolute(ini).parent_path();
+    // A .povray/3.7/povray.ini of the user's would change the picture. And where POV-Ray restricts
+    // its file access, what lies below the home folder may be read: textures.
+    command.environment = {{"HOME", command.folder.string()}, {"POVINI", ""}};
     command.timeout = options.timeout;
     command.memory = options.memory > 0 ? options.memory : memory_limit();
     command.stop = watch.stop;

@@ -41,7 +41,8 @@ struct Child {
 
 // What a new process needs to become the program.
 struct Launch {
-    std::vector<char*> argv = {};
+    std::vector<char*> argv = {}, environment = {};
+    std::vector<std::string> variables = {};  // that `environment` points to
     const char* folder = nullptr;
     int output = -1, failure = -1;  // writing ends of pipes; of the second: errno of what failed
     pid_t parent = -1;
@@ -51,11 +52,27 @@ struct Launch {
 
 rlim_t processors() { return rlim_t(std::max(sysconf(_SC_NPROCESSORS_ONLN), 1L)); }
 
+void set_environment(const Command& command, Launch& launch) {
+    for (char** variable = environ; *variable != nullptr; ++variable) {
+        const std::string_view text = *variable;
+        if (!command.environment.contains(std::string(text.substr(0, text.find('=')))))
+            launch.environment.push_back(*variable);
+    }
+    for (const auto& [name, value] : command.environment)
+        if (!value.empty()) launch.variables.push_back(name + '=' + value);
+    for (std::string& variable : launch.variables) launch.environment.push_back(variable.data());
+    launch.environment.push_back(nullptr);
+}
+
 Launch make_launch(const Command& command, int output, int failure) {
-    Launch launch = {.output = output, .failure = failure, .parent = getpid()};
+    Launch launch;
+    launch.output = output;
+    launch.failure = failure;
+    launch.parent = getpid();
     for (const std::string& word : command.argv)
         launch.argv.push_back(const_cast<char*>(word.c_str()));
     launch.argv.push_back(nullptr);
+    set_environment(command, launch);
     if (!command.folder.empty()) launch.folder = command.folder.c_str();
     // RLIMIT_DATA counts threads' stacks, filled or not.
     constexpr std::size_t stacks = std::size_t(64) << 20, stack = std::size_t(16) << 20;
@@ -96,7 +113,7 @@ bool connect(const Launch& launch) {
         sigset_t none;
         sigemptyset(&none);
         sigprocmask(SIG_SETMASK, &none, nullptr);
-        execve(launch.argv[0], launch.argv.data(), environ);
+        execve(launch.argv[0], launch.argv.data(), launch.environment.data());
     }
     const int error = errno;
     [[maybe_unused]] const ssize_t written = write(launch.failure, &error, sizeof error);

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -13,6 +14,8 @@ namespace penumbra {
 struct Command {
     std::vector<std::string> argv = {};  ///< the program's path first
     std::filesystem::path folder = {};   ///< where it runs; empty: here
+    /// Variables that differ from ours; with an empty value: that it does not get.
+    std::map<std::string, std::string> environment = {};
     std::chrono::milliseconds timeout{60'000};
     std::size_t memory = 0;           ///< bytes that it may take, stacks apart; 0: any
     std::function<void()> poll = {};  ///< called about 30 times a second while it runs
