@@ -58,8 +58,9 @@ void point_rows(Codec& codec) {
 // Of texts and the like, which may be compressed, libpng keeps one.
 constexpr png_uint_32 one_chunk = 2;  // it counts down to 1; 0 means all
 
-// Reads the header and makes room. Not when the picture is too large: `problem` says so.
-void prepare_to_read(Codec& codec) {
+// libpng ends a function that it cannot finish by a jump: nothing in there may need a destructor.
+void read_header(Codec& codec) {
+    if (setjmp(png_jmpbuf(codec.png)) != 0) return;
     png_set_read_fn(codec.png, &codec, Codec::read);
     png_set_error_fn(codec.png, &codec, Codec::on_error, Codec::on_warning);
     png_set_user_limits(codec.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // checked below
@@ -74,6 +75,11 @@ void prepare_to_read(Codec& codec) {
     raster.height = int(png_get_image_height(codec.png, codec.info));
     raster.channels = png_get_channels(codec.png, codec.info);
     raster.depth = png_get_bit_depth(codec.png, codec.info) == 16 ? Depth::u16 : Depth::u8;
+}
+
+// Not when the picture is too large: `problem` says so.
+void make_room(Codec& codec) {
+    Raster& raster = codec.raster;
     if (std::max(raster.width, raster.height) > max_image_side ||
         raster.texels() > max_image_pixels) {
         codec.problem = "it has " + std::to_string(raster.width) + " x " +
@@ -92,10 +98,8 @@ void prepare_to_read(Codec& codec) {
     codec.may_take(4 * row);  // libpng's own; the picture's are in use by now
 }
 
-void read_all(Codec& codec) {
+void read_pixels(Codec& codec) {
     if (setjmp(png_jmpbuf(codec.png)) != 0) return;
-    prepare_to_read(codec);
-    if (!codec.problem.empty()) return;
     png_read_image(codec.png, codec.rows.data());
     png_read_end(codec.png, nullptr);
 }
@@ -111,8 +115,10 @@ Decoded decode_png(std::span<const std::byte> file, const MayTake& may_take) {
     Codec codec(may_take);
     if (codec.info == nullptr) return {{}, no_memory};
     codec.input = file;
-    read_all(codec);
-    if (!codec.problem.empty()) return {{}, codec.problem};
+    for (const auto step : {read_header, make_room, read_pixels}) {
+        step(codec);
+        if (!codec.problem.empty()) return {{}, codec.problem};
+    }
     return {std::move(codec.raster), {}};
 }
 
