@@ -117,7 +117,11 @@ TEST_CASE("A shift tolerance accepts the colours of neighbours in both pictures"
     CompareOptions options;
     CHECK(compare(shifted(reference, 1, 0), reference, options).value("parity") < 0.99);
     options.shift_tolerance = 1;
-    CHECK(compare(shifted(reference, 1, -1), reference, options).value("parity") == 1);
+    const Comparison moved = compare(shifted(reference, 1, -1), reference, options);
+    CHECK(moved.value("parity") == 1);
+    CHECK(moved.value("ssim") == 1);  // and so with all other figures
+    CHECK(moved.value("flip") == 0);
+    CHECK(moved.verdict == Verdict::pass);
     CHECK(compare(shifted(reference, 2, 0), reference, options).value("parity") < 1);
     options.shift_tolerance = 2;
     CHECK(compare(shifted(reference, 2, 0), reference, options).value("parity") == 1);

@@ -234,7 +234,7 @@ Maps maps_of(const Both& shown, const CompareOptions& options, const cv::Mat& co
     if (background) *background *= float(std::exp2(options.exposure));
     maps.covered = covered_pixels(maps.test, maps.reference, background) & counted;
     maps.edges = edge_band(maps.reference);
-    maps.alike = matched_pixels(maps.test, maps.reference, options.shift_tolerance, display_step);
+    maps.alike = matched_pixels(maps.test, maps.reference, 0, display_step);
     return maps;
 }
 
@@ -261,6 +261,22 @@ std::string too_empty(const Metric& coverage) {
     return fmt::format("only {:.2g} % of the picture shows something else than the background, at "
                        "least {:.2g} % must: point the camera at the scene",
                        100 * coverage.value, 100 * *coverage.limit);
+}
+
+// The test picture with the reference's own pixels where both have each other's colour near by:
+// then all figures take them for equal.
+Image settled(const Both& pair, const CompareOptions& options) {
+    const float gain = float(std::exp2(options.exposure));
+    const auto shown = [&](const Image& image) {
+        return gain == 1 ? encoded(image) : encoded(brightened(image, options.exposure));
+    };
+    const cv::Mat matched = matched_pixels(shown(pair.test), shown(pair.reference),
+                                           options.shift_tolerance, display_step);
+    Image result = pair.test;
+    for (int y = 0; y < result.height; ++y)
+        for (int x = 0; x < result.width; ++x)
+            if (matched.at<uchar>(y, x) != 0) result.at(x, y) = pair.reference.at(x, y);
+    return result;
 }
 
 bool ignores_some(const CompareOptions& options) {
@@ -300,10 +316,13 @@ Comparison compare(const Image& test, const Image& reference, const CompareOptio
     }
     Pair kept, exposed;
     if (ignores_some(options)) kept = without_ignored(test, reference, counted);
-    const Both pair =
+    const Both given =
         ignores_some(options) ? Both{kept.test, kept.reference} : Both{test, reference};
-    result.diagnosis = not_finite(pair.test, pair.reference);
+    result.diagnosis = not_finite(given.test, given.reference);
     if (!result.diagnosis.empty()) return result;
+    Image tolerated;
+    if (options.shift_tolerance > 0) tolerated = settled(given, options);
+    const Both pair = options.shift_tolerance > 0 ? Both{tolerated, given.reference} : given;
     if (options.exposure != 0)
         exposed = {brightened(pair.test, options.exposure),
                    brightened(pair.reference, options.exposure)};

@@ -81,8 +81,9 @@ struct CompareOptions {
         {};           ///< for coverage; the most frequent border colour if absent
     Image mask = {};  ///< black pixels are ignored; empty: none. Same size as the pictures
     std::vector<PixelBox> ignored = {};  ///< pixels that are ignored
-    int shift_tolerance = 0;  ///< pixels: parity accepts the colour of any pixel that is so near
-    double exposure = 0;      ///< EV: both pictures are brightened by 2^EV before they are encoded
+    /// Pixels that have each other's colour so near by, in both directions, count as equal.
+    int shift_tolerance = 0;
+    double exposure = 0;  ///< EV: both pictures are brightened by 2^EV before they are encoded
 };
 
 /// Computes every figure of the parity rule. Unequal sizes, NaN and nearly empty pictures give
