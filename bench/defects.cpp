@@ -23,6 +23,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <stdexcept>
 
 namespace {
 
@@ -325,7 +326,9 @@ int run(const Arguments& arguments) {
         }
         if (arguments.defect.empty()) add_good_pairs(stage, pairs);
     }
-    if (outcomes.empty()) return 2;
+    if (outcomes.empty())
+        throw std::invalid_argument("no scene given, or none that shows such a defect (see the "
+                                    "beginning of bench/defects.cpp)");
     const std::string text = document(outcomes, pairs, scenes, arguments.size);
     if (arguments.document.empty())
         fmt::print("{}", text);
