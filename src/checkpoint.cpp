@@ -85,13 +85,17 @@ bool Checkpoint::read(std::span<std::byte> to) const {
 }
 
 std::optional<Checkpoint::Piece> Checkpoint::read_piece(std::vector<std::byte>& samples) const {
+    struct stat status {};
     Piece piece;
-    if (!read(std::as_writable_bytes(std::span(&piece, 1)))) return std::nullopt;
+    if (::fstat(descriptor, &status) != 0 || !read(std::as_writable_bytes(std::span(&piece, 1))))
+        return std::nullopt;
     const RowRange& rows = piece.rows;
     if (rows.first < 0 || rows.first % render_band != 0 || rows.last <= rows.first ||
         rows.last > height)
         return std::nullopt;
-    samples.resize(std::size_t(rows.last - rows.first) * row_size);
+    const std::size_t size = std::size_t(rows.last - rows.first) * row_size;
+    if (size > std::size_t(status.st_size)) return std::nullopt;  // before there is room for it
+    samples.resize(size);
     if (!read(samples) || sum_of(rows, samples) != piece.sum) return std::nullopt;
     return piece;
 }
