@@ -270,7 +270,8 @@ TEST_CASE("glTF polish, can have a clear coat") {
     CHECK(imported.scene.materials[0].shininess == 10000);
 
     Gltf gltf = with_polish(pixels(3, {0, 204, 0, 0, 255, 0}), nullptr, {{"extensions", coat}});
-    for (const Lobe& lobe : read(gltf).scene.materials[0].gloss->lobes)
+    const Imported coated = read(gltf);
+    for (const Lobe& lobe : coated.scene.materials[0].gloss->lobes)
         CHECK(lobe.reflection == Color(0.02F));
     gltf.root["materials"][0]["extensions"]["KHR_materials_clearcoat"] = {
         {"clearcoatFactor", 1}, {"clearcoatTexture", {{"index", 0}}}};  // red is 0
