@@ -59,7 +59,10 @@ class Target {
     /// Takes the checkpoint's rows; returns the one behind them.
     int restore() {
         if (!checkpoint) return 0;
-        checkpoint->restore([&](std::span<const std::byte> rows) { out.append(rows); });
+        checkpoint->restore([&](std::span<const std::byte> rows) {
+            out.append(rows);
+            restored = true;
+        });
         return unsaved_rows.first = unsaved_rows.last = checkpoint->end();
     }
     const std::string& warning() const { return problem; }
@@ -78,7 +81,8 @@ class Target {
         unsaved.insert(unsaved.end(), samples.begin(), samples.end());
         const bool full = unsaved.size() > most_unsaved;
         if (!full && seconds_since(last_save) < interval) return;
-        if (may_save())
+        // A gap would cost what an earlier run has left, of which nobody knows how long it took.
+        if (may_save() || (full && restored))
             save();
         else if (full)
             forget();
@@ -111,6 +115,7 @@ class Target {
     std::vector<std::byte> samples = {}, unsaved = {};
     RowRange unsaved_rows = {};
     int missing = 0;
+    bool restored = false;  // some rows
     std::string problem = {};
 
     void name_checkpoint() {

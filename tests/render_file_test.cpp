@@ -158,6 +158,27 @@ TEST_CASE("rows that come faster than they can be kept are rendered again") {
     CHECK(test::read(file) == test::read(folder / "b.hdr"));
 }
 
+TEST_CASE("a resumed rendering that is interrupted again keeps what it began with") {
+    const TempDir folder;
+    const NormalisedScene scene = mirror_scene();
+    const RenderOptions large = {.width = 1100, .height = 3600, .threads = 1};
+    const fs::path file = folder / "a.hdr";
+    const auto interrupt = [&](double share, const RenderFileOptions& options) {
+        std::stop_source source;
+        const auto progress = [&](double done) {
+            if (done >= share) source.request_stop();
+        };
+        CHECK(test::message_of([&] {
+                  render_file(scene, large, file, options, {progress, source.get_token()});
+              }) == "interrupted; --resume goes on from its checkpoint");
+    };
+    interrupt(0.3, often);
+    interrupt(0.9, {.checkpoint_interval = 1e-9, .checkpoint_share = 0, .resume = true});
+    CHECK(render_file(scene, large, file, {.resume = true}).resumed_rows > 3000);
+    render_file(scene, large, folder / "b.hdr");
+    CHECK(test::read(file) == test::read(folder / "b.hdr"));
+}
+
 TEST_CASE("somebody else's file is no checkpoint") {
     const TempDir folder;
     test::write(folder / "a.png.checkpoint", "notes");

@@ -17,7 +17,8 @@ struct RenderFileOptions {
     /// "chair.png.checkpoint", which goes away with success. 0: none.
     double checkpoint_interval = 5;
     /// The most of the time that checkpoints may take. Rows that come faster are not kept and
-    /// rendered again, which takes less than 1 / share times as long as keeping them.
+    /// rendered again, which takes less than 1 / share times as long as keeping them. A run that
+    /// goes on from a checkpoint keeps all rows.
     double checkpoint_share = 0.01;
     bool resume = false;  ///< go on from the checkpoint of an earlier, interrupted call
     /// Gives one line that changes with the program: another one's checkpoint is not used. Asked
