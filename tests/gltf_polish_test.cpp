@@ -288,8 +288,9 @@ TEST_CASE("glTF polish, keeps its images where several models form one scene") {
     const test::TempDir folder;
     const auto one = test::write(folder / "one.gltf", gltf.text());
     const auto two = test::write(folder / "two.gltf", gltf.text());
-    const Scene scene = load_scene({one, two}).scene;
+    const Scene scene = load_scene({one, two}, {.normal_maps = NormalMaps::pixel}).scene;
     const auto textures_of = [](const Material& m) {
+        REQUIRE((m.emission_map && m.coverage && m.normal_map && m.gloss));
         return std::vector<Index>{std::get<ImageMap>(m.pattern).texture,
                                   m.emission_map->texture,
                                   m.coverage->map.texture,
