@@ -76,7 +76,7 @@ struct Layout {
 
     void accessors() const;
     void alignment() const;
-    void zeros() const;
+    void uses() const;
     void trees() const;
     void transforms() const;
 };
@@ -134,13 +134,16 @@ void Layout::alignment() const {
                                   found > 1 ? fmt::format(" (in {} accessors)", found) : "")});
 }
 
-// They may be used as often as the author likes.
-void Layout::zeros() const {
-    constexpr std::uint64_t most = 2 * max_implicit_count;
-    std::uint64_t used = 0;
+// Few bytes may describe many elements, and primitives may use them as often as the author likes:
+// zeros take no bytes at all, and the elements that a sparse accessor replaces are gone through for
+// each primitive.
+void Layout::uses() const {
+    constexpr std::uint64_t most_zeros = 2 * max_implicit_count, most_replaced = 1 << 28;
+    std::uint64_t zeros = 0, replaced = 0;
     const auto add = [&](const json& index) {
         const json& accessor = root["accessors"][index.get<std::size_t>()];
-        if (!accessor.contains("bufferView")) used += size_at(accessor, "count");
+        if (!accessor.contains("bufferView")) zeros += size_at(accessor, "count");
+        if (accessor.contains("sparse")) replaced += size_at(accessor["sparse"], "count");
     };
     const auto add_all = [&](const json& attributes) {
         for (const json& index : attributes) add(index);
@@ -156,11 +159,15 @@ void Layout::zeros() const {
             if (!compressed && primitive.contains("indices")) add(primitive["indices"]);
             if (primitive.contains("targets"))
                 for (const json& target : primitive["targets"]) add_all(target);
-            if (used > most)
-                fail(fmt::format("/meshes/{}/primitives/{}", m, p),
-                     fmt::format("uses elements without a buffer view; with those of the "
-                                 "primitives before they are {}, more than the {} that are read",
-                                 used, most));
+            const auto check = [&](std::uint64_t used, std::uint64_t most, const char* what) {
+                if (used > most)
+                    fail(fmt::format("/meshes/{}/primitives/{}", m, p),
+                         fmt::format("uses {}; with those of the primitives before they are {}, "
+                                     "more than the {} that are read",
+                                     what, used, most));
+            };
+            check(zeros, most_zeros, "elements without a buffer view");
+            check(replaced, most_replaced, "sparse elements");
         }
     }
 }
@@ -216,7 +223,7 @@ void check_layout(const json& root, const std::string& file, Losses& losses) {
     layout.views();
     layout.accessors();
     layout.alignment();
-    layout.zeros();
+    layout.uses();
     layout.trees();
     layout.transforms();
 }

@@ -124,6 +124,25 @@ TEST_CASE("primitives cannot share zeros without end") {
                    .limit = 400});
 }
 
+TEST_CASE("primitives cannot share sparse elements without end") {
+    const std::string place =
+        "a.gltf#/meshes/0/primitives/256: uses sparse elements; with those of "
+        "the primitives before they are 269484032, more than the 268435456";
+    std::string many = repeated(R"({"attributes":{"POSITION":0}},)", 300);
+    many.pop_back();
+    const TempDir folder;
+    write(folder / "a.bin", "");
+    std::filesystem::resize_file(folder / "a.bin", 12 * mega);
+    write(folder / "a.gltf", gltf(R"("buffers":[{"uri":"a.bin","byteLength":12582912}],
+        "bufferViews":[{"buffer":0,"byteLength":12582912}],
+        "accessors":[{"componentType":5126,"type":"VEC3","count":1048576,"bufferView":0,
+            "sparse":{"count":1048576,"indices":{"bufferView":0,"componentType":5121},
+                      "values":{"bufferView":0}}}],
+        "meshes":[{"primitives":[)" +
+                                  many + "]}]"));
+    CHECK(contains(message_of([&] { read_gltf(folder / "a.gltf"); }), place));
+}
+
 TEST_CASE("instances cannot be had for nothing") {
     check_refused(
         {.name = "a.gltf",
