@@ -120,15 +120,27 @@ std::string printable(std::string_view text);
 
 // ---- gltf_accessor.cpp ------------------------------------------------------------------------
 
-/// Elements [first, first + count) of an accessor.
+/// Some elements of an accessor: [first, first + count), or those that are chosen.
 struct Range {
     std::size_t first = 0, count = 0;
+    std::span<const Index> chosen = {};  ///< `count` of them, ascending; empty: all of the range
+
+    /// The number of the i-th of them in the accessor.
+    std::size_t operator[](std::size_t i) const {
+        return chosen.empty() ? first + i : std::size_t(chosen[i]);
+    }
+    /// `length` of them from the `start`-th on.
+    Range part(std::size_t start, std::size_t length) const {
+        return {.first = first + start,
+                .count = length,
+                .chosen = chosen.empty() ? chosen : chosen.subspan(start, length)};
+    }
 };
 
 /// Writes the first `width` components of each element as floats, one element after the other.
 /// Integers are normalised if the accessor says so. Throws Error (input) where a float is not
 /// finite or a buffer has no content. Precondition: range and width fit the accessor.
-void read_floats(const Document& document, int accessor, Range range, int width, float* out);
+void read_floats(const Document& document, int accessor, const Range& range, int width, float* out);
 
 /// Writes all elements of a SCALAR accessor of unsigned integers. Throws Error (input).
 void read_indices(const Document& document, int accessor, Index* out);

@@ -50,16 +50,24 @@ void with_component(int type, Work&& work) {
     }
 }
 
-void copy_floats(const Elements& elements, std::size_t count, int width, float* out) {
+// `elements` are all of the accessor.
+void copy_floats(const Elements& elements, const Range& range, int width, float* out) {
     with_component(elements.component_type, [&](auto sample) {
         using T = decltype(sample);
-        for_each_block(count, [&](std::size_t first, std::size_t last) {
-            const std::byte* from = elements.data + first * elements.stride;
+        const auto copy = [&](const std::byte* from, float* to) {
+            for (int c = 0; c < width; ++c)
+                to[c] = as_float(load<T>(from + std::size_t(c) * sizeof(T)), elements.normalized);
+        };
+        for_each_block(range.count, [&](std::size_t first, std::size_t last) {
             float* to = out + first * std::size_t(width);
-            for (std::size_t i = first; i < last; ++i, from += elements.stride)
-                for (int c = 0; c < width; ++c)
-                    *to++ =
-                        as_float(load<T>(from + std::size_t(c) * sizeof(T)), elements.normalized);
+            if (range.chosen.empty()) {
+                const std::byte* from = elements.data + (range.first + first) * elements.stride;
+                for (std::size_t i = first; i < last; ++i, from += elements.stride, to += width)
+                    copy(from, to);
+            } else {
+                for (std::size_t i = first; i < last; ++i, to += width)
+                    copy(elements.data + range[i] * elements.stride, to);
+            }
         });
     });
 }
@@ -80,17 +88,16 @@ const std::byte* view_data(const Document& document, int view, std::size_t offse
     return buffer.data() + slice.byteOffset + offset;
 }
 
-// Elements of an accessor from `first` on; no data: all zeros.
+// The elements of an accessor; no data: all zeros.
 Elements elements_of(const Document& document, const tinygltf::Accessor& accessor,
-                     std::size_t first, const std::string& place) {
+                     const std::string& place) {
     Elements elements = {.component_type = accessor.componentType,
                          .normalized = accessor.normalized};
     if (accessor.bufferView < 0) return elements;
     const std::size_t given =
         document.model.bufferViews[std::size_t(accessor.bufferView)].byteStride;
     elements.stride = given != 0 ? given : element_size(accessor);
-    elements.data = view_data(document, accessor.bufferView, accessor.byteOffset, place) +
-                    first * elements.stride;
+    elements.data = view_data(document, accessor.bufferView, accessor.byteOffset, place);
     return elements;
 }
 
@@ -120,26 +127,36 @@ void for_each_sparse(const Document& document, const tinygltf::Accessor& accesso
     });
 }
 
+// Where element `number` of an accessor is in a range; range.count: not in it.
+std::size_t place_in(const Range& range, std::size_t number) {
+    if (range.chosen.empty())
+        return number < range.first ? range.count : std::min(number - range.first, range.count);
+    const auto found = std::ranges::lower_bound(range.chosen, number);
+    const bool is_in = found != range.chosen.end() && *found == number;
+    return is_in ? std::size_t(found - range.chosen.begin()) : range.count;
+}
+
 }  // namespace
 
 int components(const tinygltf::Accessor& accessor) {
     return tinygltf::GetNumComponentsInType(std::uint32_t(accessor.type));
 }
 
-void read_floats(const Document& document, int index, Range range, int width, float* out) {
+void read_floats(const Document& document, int index, const Range& range, int width, float* out) {
     const tinygltf::Accessor& accessor = document.model.accessors[std::size_t(index)];
     const std::string place = document.place(fmt::format("/accessors/{}", index));
-    Elements elements = elements_of(document, accessor, range.first, place);
+    Elements elements = elements_of(document, accessor, place);
     const std::size_t numbers = range.count * std::size_t(width);
     if (elements.data == nullptr)
         std::fill_n(out, numbers, 0.0F);
     else
-        copy_floats(elements, range.count, width, out);
+        copy_floats(elements, range, width, out);
 
     for_each_sparse(document, accessor, place, [&](std::size_t i, const std::byte* value) {
-        if (i < range.first || i - range.first >= range.count) return;
+        const std::size_t at = place_in(range, i);
+        if (at == range.count) return;
         elements.data = value;
-        copy_floats(elements, 1, width, out + (i - range.first) * std::size_t(width));
+        copy_floats(elements, {.count = 1}, width, out + at * std::size_t(width));
     });
 
     const float* bad =
@@ -147,13 +164,13 @@ void read_floats(const Document& document, int index, Range range, int width, fl
     if (bad != out + numbers)
         throw Error(Failure::input, place,
                     fmt::format("element {} is not a finite number",
-                                range.first + std::size_t(bad - out) / std::size_t(width)));
+                                range[std::size_t(bad - out) / std::size_t(width)]));
 }
 
 void read_indices(const Document& document, int index, Index* out) {
     const tinygltf::Accessor& accessor = document.model.accessors[std::size_t(index)];
     const std::string place = document.place(fmt::format("/accessors/{}", index));
-    const Elements elements = elements_of(document, accessor, 0, place);
+    const Elements elements = elements_of(document, accessor, place);
     with_component(accessor.componentType, [&](auto sample) {
         using T = decltype(sample);
         const std::byte* from = elements.data;

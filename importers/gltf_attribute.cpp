@@ -73,14 +73,14 @@ struct Vertices {
 
 // glTF 2.0, section 3.7.2.2: each target's deltas times its weight. In blocks, so that the deltas
 // of a large mesh are not all in memory.
-void add_deltas(const Use& use, double weight, Range range, const Vertices& out) {
+void add_deltas(const Use& use, double weight, const Range& range, const Vertices& out) {
     constexpr std::size_t block = std::size_t(1) << 16;
     const auto width = std::size_t(out.width), stride = std::size_t(out.stride);
     std::vector<float> deltas(std::min(block, range.count) * width);
     for (std::size_t start = 0; start < range.count; start += block) {
         const std::size_t count = std::min(block, range.count - start);
-        read_floats(use.part.reader.document, use.index,
-                    {.first = range.first + start, .count = count}, out.width, deltas.data());
+        read_floats(use.part.reader.document, use.index, range.part(start, count), out.width,
+                    deltas.data());
         for (std::size_t i = 0; i < count; ++i)
             for (std::size_t c = 0; c < width; ++c) {
                 float& number = out.first[(start + i) * stride + c];
@@ -89,7 +89,7 @@ void add_deltas(const Use& use, double weight, Range range, const Vertices& out)
     }
 }
 
-void morph(const Part& part, const std::string& name, Range range, const Vertices& out) {
+void morph(const Part& part, const std::string& name, const Range& range, const Vertices& out) {
     const auto& targets = part.primitive.targets;
     const auto& weights = part.form.weights;
     for (std::size_t t = 0; t < std::min(targets.size(), weights.size()); ++t) {
@@ -153,7 +153,7 @@ void repair_normals(const Part& part, Mesh& mesh) {
                     mesh.normals.size()));
 }
 
-void read_normals(const Part& part, Range range, Mesh& mesh) {
+void read_normals(const Part& part, const Range& range, Mesh& mesh) {
     if (attribute(part, "NORMAL", {TINYGLTF_TYPE_VEC3}) < 0) return;
     resize_claimed(mesh.normals, range.count, part.place());
     read_vertices(part, "NORMAL", range, 3, &mesh.normals.front().x);
@@ -172,7 +172,7 @@ Vec3 along(const Vec3& normal) {
 }
 
 // Only normal maps need tangents. Without normals they have no meaning (glTF 2.0, section 3.7.2.1).
-void read_tangents(const Part& part, Range range, Mesh& mesh) {
+void read_tangents(const Part& part, const Range& range, Mesh& mesh) {
     if (mesh.normals.empty() || !has_normal_map(part) ||
         attribute(part, "TANGENT", {TINYGLTF_TYPE_VEC4}) < 0)
         return;
@@ -198,7 +198,7 @@ void read_tangents(const Part& part, Range range, Mesh& mesh) {
                         mesh.tangents.size()));
 }
 
-void read_texcoords(const Part& part, Range range, Mesh& mesh) {
+void read_texcoords(const Part& part, const Range& range, Mesh& mesh) {
     const int material = material_of(part.reader, part.primitive);
     const TextureUse use = texture_use(part.reader, material);
     const std::string name = fmt::format("TEXCOORD_{}", use.texcoord);
@@ -229,7 +229,7 @@ Index fading(Reader& reader, Index material) {
 namespace {
 
 // glTF 2.0, section 3.9.4: alpha has a meaning only where the material is not opaque.
-void read_alphas(const Part& part, Range range, int accessor, Mesh& mesh) {
+void read_alphas(const Part& part, const Range& range, int accessor, Mesh& mesh) {
     const int material = material_of(part.reader, part.primitive);
     if (part.accessor(accessor).type != TINYGLTF_TYPE_VEC4 || material < 0) return;
     const std::string& mode = part.model().materials[std::size_t(material)].alphaMode;
@@ -259,7 +259,7 @@ void read_alphas(const Part& part, Range range, int accessor, Mesh& mesh) {
             "between vertices their colours are mixed by their alpha too: approximate");
 }
 
-void read_colors(const Part& part, Range range, Mesh& mesh) {
+void read_colors(const Part& part, const Range& range, Mesh& mesh) {
     const int accessor = attribute(part, "COLOR_0", {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4});
     for (const auto& [name, ignored] : part.primitive.attributes)
         if (name.rfind("COLOR_", 0) == 0 && name != "COLOR_0")
@@ -284,12 +284,13 @@ int attribute(const Part& part, const std::string& name, Types types) {
     return found->second;
 }
 
-void read_vertices(const Part& part, const std::string& name, Range range, int width, float* out) {
+void read_vertices(const Part& part, const std::string& name, const Range& range, int width,
+                   float* out) {
     read_floats(part.reader.document, part.primitive.attributes.at(name), range, width, out);
     morph(part, name, range, {.first = out, .width = width, .stride = width});
 }
 
-void read_attributes(const Part& part, Range range, Mesh& mesh) {
+void read_attributes(const Part& part, const Range& range, Mesh& mesh) {
     check_weights(part);
     resize_claimed(mesh.positions, range.count, part.place());
     read_vertices(part, "POSITION", range, 3, &mesh.positions.front().x);

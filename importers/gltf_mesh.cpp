@@ -86,9 +86,10 @@ Triangles read_triangles(const Part& part) {
     return read_strip_or_fan(part, count, part.primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN);
 }
 
-// The vertices that the triangles use; primitives that share one big buffer do not copy it whole.
-// The triangles are made to count from the first of them.
-Range used_vertices(const Part& part, Triangles& triangles) {
+// The vertices that the triangles use; these are made to count from the first of them. Primitives
+// that share one big buffer do not copy it whole: where few of a long range are used, `chosen` is a
+// list of them.
+Range used_vertices(const Part& part, Triangles& triangles, std::vector<Index>& chosen) {
     Index low = no_index, high = 0;
     for (const auto& triangle : triangles)
         for (const Index corner : triangle) {
@@ -99,9 +100,20 @@ Range used_vertices(const Part& part, Triangles& triangles) {
     if (high >= count)
         part.fail("/indices",
                   fmt::format("index {} is used, but there are {} vertices", high, count));
+    const std::size_t corners = 3 * triangles.size(), spread = std::size_t(high - low) + 1;
+    if (spread <= 2 * corners) {
+        for (auto& triangle : triangles)
+            for (Index& corner : triangle) corner -= low;
+        return {.first = low, .count = spread};
+    }
+    resize_claimed(chosen, corners, part.place());
+    std::copy_n(triangles.data()->data(), corners, chosen.begin());
+    std::ranges::sort(chosen);
+    chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
     for (auto& triangle : triangles)
-        for (Index& corner : triangle) corner -= low;
-    return {.first = low, .count = std::size_t(high - low) + 1};
+        for (Index& corner : triangle)
+            corner = Index(std::ranges::lower_bound(chosen, corner) - chosen.begin());
+    return {.first = low, .count = chosen.size(), .chosen = chosen};
 }
 
 // Adds to `shown` what the primitive has to show.
@@ -120,7 +132,8 @@ void read_primitive(const Part& part, const std::vector<Matrix>& joints, const s
         part.lose("it has no whole triangle and is left out");
         return;
     }
-    const Range range = used_vertices(part, mesh.triangles);
+    std::vector<Index> chosen;
+    const Range range = used_vertices(part, mesh.triangles, chosen);
     mesh.material = read_material(part.reader, material_of(part.reader, part.primitive));
     read_attributes(part, range, mesh);
     const bool posed = !joints.empty() && pose_vertices(part, range, joints, mesh);

@@ -39,11 +39,12 @@ int attribute(const Part& part, const std::string& name, Types types);
 
 /// The vertices of an attribute that attribute() has found, `width` numbers each, morphed as far as
 /// the form's weights say. Throws Error (input).
-void read_vertices(const Part& part, const std::string& name, Range range, int width, float* out);
+void read_vertices(const Part& part, const std::string& name, const Range& range, int width,
+                   float* out);
 
 /// Adds what the primitive's vertices have to a mesh that has its triangles: positions, normals,
 /// tangents, texture coordinates and colours, in the mesh's own space. Throws Error (input).
-void read_attributes(const Part& part, Range range, Mesh& mesh);
+void read_attributes(const Part& part, const Range& range, Mesh& mesh);
 
 /// The material, with a coverage for the alpha of vertices.
 Index fading(Reader& reader, Index material);
@@ -54,12 +55,13 @@ Index fading(Reader& reader, Index material);
 /// these follow from its texture coordinates, each with a material of its own, so that one set of
 /// texture coordinates is enough. Where there are too many of them those images are given up, and
 /// that is said. Throws Error (input).
-std::vector<Mesh> lay_by_one_set(const Part& part, Range range, Mesh mesh);
+std::vector<Mesh> lay_by_one_set(const Part& part, const Range& range, Mesh mesh);
 
 // ---- gltf_skin.cpp ----------------------------------------------------------------------------
 
 /// Moves the mesh's vertices to where its skin's joints take them, in the world; false when the
 /// primitive is not bound to the skin. Throws Error (input).
-bool pose_vertices(const Part& part, Range range, const std::vector<Matrix>& joints, Mesh& mesh);
+bool pose_vertices(const Part& part, const Range& range, const std::vector<Matrix>& joints,
+                   Mesh& mesh);
 
 }  // namespace penumbra::gltf

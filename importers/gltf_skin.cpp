@@ -29,7 +29,7 @@ std::size_t count_sets(const Part& part) {
     return sets;
 }
 
-Influences read_influences(const Part& part, std::size_t sets, Range range) {
+Influences read_influences(const Part& part, std::size_t sets, const Range& range) {
     Influences influences = {.sets = sets};
     const auto read = [&](const char* name, std::size_t set) {
         std::vector<float> numbers(range.count * 4);
@@ -141,7 +141,8 @@ std::vector<Matrix> joint_matrices(const Reader& reader, int index) {
     return matrices;
 }
 
-bool pose_vertices(const Part& part, Range range, const std::vector<Matrix>& joints, Mesh& mesh) {
+bool pose_vertices(const Part& part, const Range& range, const std::vector<Matrix>& joints,
+                   Mesh& mesh) {
     const std::size_t sets = count_sets(part);
     if (sets == 0) return false;
     Blender blender = {part, joints};
@@ -149,15 +150,14 @@ bool pose_vertices(const Part& part, Range range, const std::vector<Matrix>& joi
     constexpr std::size_t block = std::size_t(1) << 16;
     for (std::size_t start = 0; start < range.count; start += block) {
         const std::size_t count = std::min(block, range.count - start);
-        const Influences influences =
-            read_influences(part, sets, {.first = range.first + start, .count = count});
+        const Influences influences = read_influences(part, sets, range.part(start, count));
         for (std::size_t i = 0; i < count; ++i)
-            place_vertex(blender.blend(influences, i, range.first + start + i), start + i, mesh);
+            place_vertex(blender.blend(influences, i, range[start + i]), start + i, mesh);
     }
     if (const auto bad = std::find_if_not(mesh.positions.begin(), mesh.positions.end(), finite);
         bad != mesh.positions.end())
         part.fail("", fmt::format("skin {} takes vertex {} too far away", part.form.skin,
-                                  range.first + std::size_t(bad - mesh.positions.begin())));
+                                  range[std::size_t(bad - mesh.positions.begin())]));
     if (blender.weightless > 0)
         part.lose(fmt::format("{} of its vertices have no weights; they follow the first joint of "
                               "skin {}",

@@ -66,7 +66,8 @@ std::optional<Lookup> lookup_between(const Corners& from, const Corners& to) {
 // The sets of texture coordinates that OtherSets use, for the vertices of a mesh.
 using Sets = std::vector<std::vector<Vec2f>>;
 
-std::optional<Sets> read_sets(const Part& part, Range range, const std::vector<OtherSet>& wanted) {
+std::optional<Sets> read_sets(const Part& part, const Range& range,
+                              const std::vector<OtherSet>& wanted) {
     Sets sets;
     for (const OtherSet& other : wanted) {
         const std::string name = fmt::format("TEXCOORD_{}", other.texcoord);
@@ -146,7 +147,7 @@ Mesh part_of(const Mesh& mesh, std::vector<Facet> facets) {
 
 }  // namespace
 
-std::vector<Mesh> lay_by_one_set(const Part& part, Range range, Mesh mesh) {
+std::vector<Mesh> lay_by_one_set(const Part& part, const Range& range, Mesh mesh) {
     Reader& reader = part.reader;
     const int source = material_of(reader, part.primitive);
     const auto others = reader.looks.other_sets.find(source);

@@ -2,6 +2,9 @@
 #include "gltf_builder.h"
 
 #include <cstring>
+#include <limits>
+#include <numeric>
+#include <type_traits>
 
 using namespace penumbra;
 using test::Gltf;
@@ -189,6 +192,60 @@ TEST_CASE("glTF meshes, copy only the vertices that a primitive uses") {
     const Mesh mesh = only_mesh(gltf);
     CHECK(mesh.positions == std::vector<Vec3f>{{1, 1, 0}, {2, 0, 0}, {2, 1, 0}});
     CHECK(mesh.triangles == Triangles{{2, 0, 1}});
+}
+
+TEST_CASE("glTF meshes, list the vertices of a primitive that uses few of many") {
+    constexpr std::size_t count = 40;
+    const auto numbers = [](int width) {
+        std::vector<float> values(count * std::size_t(width));
+        for (std::size_t i = 0; i < values.size(); ++i)
+            values[i] = float(1 + i * 7 % 23) / 32 + float(width);
+        return values;
+    };
+    Gltf gltf;
+    const json attributes = {{"POSITION", gltf.accessor("VEC3", numbers(3))},
+                             {"NORMAL", gltf.accessor("VEC3", numbers(3))},
+                             {"TEXCOORD_0", gltf.accessor("VEC2", numbers(2))},
+                             {"COLOR_0", gltf.accessor("VEC3", numbers(3))}};
+    gltf.root["accessors"][0]["sparse"] = {
+        {"count", 3},
+        {"indices",
+         {{"bufferView", gltf.view(std::vector<std::uint8_t>{17, 18, 39})},
+          {"componentType", 5121}}},
+        {"values", {{"bufferView", gltf.view(std::vector<float>(9, 5))}}}};
+    const json targets = {{{"POSITION", gltf.accessor("VEC3", numbers(3))}}};
+    std::vector<std::uint8_t> all(count + 2, 39);
+    std::iota(all.begin(), all.begin() + count, std::uint8_t(0));
+    for (const auto& indices : {all, {39, 3, 17, 3, 39, 20}}) {
+        gltf.show({{"attributes", attributes},
+                   {"targets", targets},
+                   {"indices", gltf.accessor("SCALAR", indices)}});
+        gltf.root["meshes"].back()["weights"] = {0.5};
+    }
+    const std::vector<Mesh> meshes = read(gltf).scene.meshes;
+    REQUIRE(meshes.size() == 2);
+    CHECK(meshes[1].triangles == Triangles{{3, 0, 1}, {0, 3, 2}});
+    const auto check_chosen = [&](const auto& whole, const auto& some) {
+        REQUIRE(whole.size() == count);
+        CHECK(some ==
+              std::remove_cvref_t<decltype(some)>{whole[3], whole[17], whole[20], whole[39]});
+    };
+    check_chosen(meshes[0].positions, meshes[1].positions);
+    check_chosen(meshes[0].normals, meshes[1].normals);
+    check_chosen(meshes[0].texcoords, meshes[1].texcoords);
+    check_chosen(meshes[0].colors, meshes[1].colors);
+    CHECK(meshes[1].positions[1] != meshes[1].positions[0]);
+
+    gltf.root["meshes"].erase(0);
+    gltf.root["nodes"].erase(0);
+    gltf.root["scenes"][0]["nodes"] = {0};
+    gltf.root["nodes"][0]["mesh"] = 0;
+    const float infinite = std::numeric_limits<float>::infinity();
+    std::memcpy(gltf.bin.data() + 20 * 12, &infinite, sizeof infinite);
+    CHECK(test::problem(gltf) == "box.gltf#/accessors/0: element 20 is not a finite number");
+    std::memcpy(gltf.bin.data() + 20 * 12, gltf.bin.data(), sizeof infinite);
+    std::memcpy(gltf.bin.data() + 21 * 12, &infinite, sizeof infinite);  // of no triangle
+    CHECK_NOTHROW(read(gltf));
 }
 
 TEST_CASE("glTF meshes, read vertex colours in every form") {
