@@ -146,6 +146,31 @@ TEST_CASE("a missing or failing POV-Ray exits with 5") {
     CHECK(entries(folder.path) == 1);
 }
 
+TEST_CASE("a failing POV-Ray is told of with the names that the report has in the end") {
+    const TempDir folder;
+    test::write(folder / "scene.toml", small_scene);
+    const auto failing =
+        test::write(folder / "povray",
+                    "#!/bin/sh\ntest \"$1\" = --version && echo POV-Ray 3.7.0.10.unofficial\n");
+    fs::permissions(failing, fs::perms::owner_all);
+    const auto error_of = [&](const std::vector<std::string>& words) {
+        std::vector<std::string> all = {"validate", "scene.toml", "--povray", failing.string(),
+                                        "--report"};
+        all.insert(all.end(), words.begin(), words.end());
+        const Ended ended = run(folder.path, all);
+        CHECK(ended.status == 5);
+        return ended.err;
+    };
+    const std::string why = ": POV-Ray failed and did not say why\n";
+    CHECK(error_of({"new"}).ends_with("penumbra: error: new/scene.ini" + why));
+    CHECK(error_of({"new"}).ends_with("penumbra: error: new/scene.ini" + why));
+    CHECK(fs::exists(folder / "new/scene.ini"));
+    CHECK(test::read(folder / "new/report.json").find(".tmp") == std::string::npos);
+    CHECK(error_of({"all", "--each"}).ends_with("penumbra: error: all/scene/scene.ini" + why));
+    CHECK(fs::exists(folder / "all/scene/scene.ini"));
+    CHECK(test::read(folder / "all/scene/index.html").find(".tmp") == std::string::npos);
+}
+
 TEST_CASE("a full standard output is an output failure") {
     const TempDir folder;
     test::write(folder / "a.obj", cube_corner);

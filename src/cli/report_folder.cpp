@@ -57,6 +57,13 @@ ReportFolder::ReportFolder(const fs::path& final_name) : target(plain(final_name
 
 ReportFolder::~ReportFolder() { remove_leftover(); }
 
+std::string ReportFolder::with_final_names(std::string message) const {
+    const std::string here = (staging / "").string();
+    for (auto at = message.find(here); at != message.npos; at = message.find(here, at))
+        message.replace(at, here.size(), (target / "").string());
+    return message;
+}
+
 void ReportFolder::publish(const std::string& part) {
     std::error_code error;
     fs::create_directories(target, error);

@@ -24,6 +24,9 @@ class ReportFolder {
     /// The final folder; what is in it is of an earlier run.
     const std::filesystem::path& final_path() const { return target; }
 
+    /// A message with the names that the files of this folder will have.
+    std::string with_final_names(std::string message) const;
+
     /// Moves one folder of it to the final folder at once, in the place of an earlier one.
     void publish(const std::string& part);
 

@@ -157,7 +157,7 @@ class SceneRun {
             judge(other);
         } catch (const Error& error) {
             if (error.failure == Failure::interrupted) throw;
-            other.message = error.what();
+            other.message = report.with_final_names(error.what());
             other.comparison.verdict = Verdict::error;
         }
         cases.push_back(std::move(other));
@@ -267,9 +267,10 @@ void validate_scene(const Context& context, const SceneJob& job, ReportFolder& r
     try {
         SceneRun(context, job, report, into).run();
     } catch (const Error& error) {
+        const Error named(error.failure, "", report.with_final_names(error.what()));
         cases.resize(1);
-        keep_failure(error, report, cases[0]);
-        throw;
+        keep_failure(named, report, cases[0]);
+        throw named;
     } catch (const std::exception& error) {
         cases.resize(1);
         keep_failure(Error(Failure::input, "", fmt::format("internal error: {}", error.what())),
