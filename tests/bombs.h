@@ -113,6 +113,14 @@ inline std::string tiled_exr(std::uint32_t size, std::uint32_t tile) {
            '\0' + std::string(64, '\0');
 }
 
+// The beginning of a lossless WebP picture; sides of at most 16,384.
+inline std::string webp(std::uint32_t width, std::uint32_t height) {
+    const std::string picture =
+        '\x2f' + little_endian((width - 1) | (height - 1) << 14) + std::string(65, '\0');
+    const std::string chunk = "VP8L" + little_endian(std::uint32_t(picture.size())) + picture;
+    return "RIFF" + little_endian(std::uint32_t(chunk.size() + 4)) + "WEBP" + chunk;
+}
+
 inline std::string gltf(const std::string& rest) {
     return R"({"asset":{"version":"2.0"},)" + rest + "}";
 }

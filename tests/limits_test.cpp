@@ -107,6 +107,17 @@ TEST_CASE("an OpenEXR file cannot ask for more than the limit") {
                    "it has more pixels than are supported"));
 }
 
+TEST_CASE("a WebP file cannot ask for more than the limit") {
+    check_refused({.name = "a.webp",
+                   .content = webp(8000, 8000),
+                   .place = "a.webp: needs ",
+                   .command = "compare"});
+    const TempDir folder;
+    write(folder / "b.webp", webp(16384, 16384));
+    CHECK(contains(message_of([&] { load_image(folder / "b.webp"); }),
+                   "it has more pixels than are supported"));
+}
+
 TEST_CASE("primitives cannot share zeros without end") {
     const std::string primitive = R"({"attributes":{"POSITION":0}},)";
     std::string all = repeated(primitive, 2), many = repeated(primitive, 1000);
