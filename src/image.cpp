@@ -5,6 +5,7 @@
 #include "image_writer.h"
 #include "jpeg_codec.h"
 #include "memory.h"
+#include "plain_text.h"
 #include "png_codec.h"
 #include "png_encoder.h"
 #include "samples.h"
@@ -51,7 +52,8 @@ Raster decode_image(std::span<const std::byte> file, const std::string& name) {
     }
     if (refused) throw MemoryError(*refused);
     if (!decoded.problem.empty())
-        throw Error(Failure::input, name, "cannot be read as an image (" + decoded.problem + ")");
+        throw Error(Failure::input, name,
+                    "cannot be read as an image (" + one_line(decoded.problem) + ")");
     return std::move(decoded.raster);
 }
 
