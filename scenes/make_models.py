@@ -236,7 +236,7 @@ PITCH_RADIUS = 0.042
 def add_gears(gltf, table, meshing_angle):
     """Two helical gears in mesh: the second is the mirror image of the first, as it has to be."""
     mesh = gltf.mesh("Gear", "Brass", smooth(gear(TEETH, PITCH_RADIUS, 0.018, math.radians(9)), 30))
-    group = gltf.node("Gears", parent=table, translation=(0.055, 0.0007, 0.105))
+    group = gltf.node("Gears", parent=table, translation=(0.066, 0.0007, 0.113))
     turn = meshing_angle - 180 / TEETH
     gltf.node("GearLeft", parent=group, mesh=mesh, turn=("y", turn))
     x, z = math.cos(math.radians(meshing_angle)), -math.sin(math.radians(meshing_angle))
@@ -270,11 +270,13 @@ def add_blocks(gltf, table):
 
 def make_desk():
     gltf = Gltf(os.path.join(MODELS, "desk.glb"))
-    gltf.material("Enamel", (0.02, 0.13, 0.12), metallic=0.0, roughness=0.35)
+    gltf.material("Enamel", (0.02, 0.13, 0.12), metallic=0.0, roughness=0.35,
+                  double_sided=True)
     gltf.material("Steel", (0.62, 0.62, 0.64), metallic=1.0, roughness=0.3)
     gltf.material("Brass", (0.80, 0.53, 0.20), metallic=1.0, roughness=0.35)
     gltf.material("Glaze", (1, 1, 1), metallic=0.0, roughness=0.25)
-    gltf.material("Reflector", (0.9, 0.88, 0.8), metallic=0.0, roughness=0.6, emission=(0.55, 0.42, 0.22))
+    gltf.material("Reflector", (0.9, 0.88, 0.8), metallic=0.0, roughness=0.6,
+                  emission=(0.55, 0.42, 0.22), double_sided=True)
     gltf.material("Bulb", (1, 1, 1), metallic=0.0, roughness=0.5, emission=(1, 0.93, 0.75))
     gltf.material("Letters", (1, 1, 1), metallic=0.0, roughness=0.5,
                   texture=png(3 * CELL, 2 * CELL, letter_texel))

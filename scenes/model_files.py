@@ -106,7 +106,8 @@ class Gltf:
         accessor["max"] = [max(column) for column in zip(*exact)]
         return self.add("accessors", accessor)
 
-    def material(self, name, color, metallic, roughness, emission=None, texture=None):
+    def material(self, name, color, metallic, roughness, emission=None, texture=None,
+                 double_sided=False):
         pbr = {"baseColorFactor": list(color) + [1.0], "metallicFactor": metallic,
                "roughnessFactor": roughness}
         if texture:
@@ -116,6 +117,8 @@ class Gltf:
         material = {"name": name, "pbrMetallicRoughness": pbr}
         if emission:
             material["emissiveFactor"] = list(emission)
+        if double_sided:
+            material["doubleSided"] = True
         self.add("materials", material)
 
     def mesh(self, name, material, mesh, texcoords=True, colors=False):
