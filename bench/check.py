@@ -1,6 +1,6 @@
 """Holds the programs of bench/ against penumbra's own account of a scene; nothing is timed.
 
-  python3 bench/check.py PENUMBRA FLOOR TO_TACHYON SCENE VIRTUAL_SOURCES
+  python3 bench/check.py PENUMBRA FLOOR SCENE VIRTUAL_SOURCES
 """
 
 import json
@@ -9,7 +9,7 @@ import subprocess
 import sys
 import tempfile
 
-penumbra, floor, to_tachyon, scene, sources = sys.argv[1:]
+penumbra, floor, scene, sources = sys.argv[1:]
 small = ["--set", "render.size=[64,48]"]
 
 
@@ -33,7 +33,7 @@ if not 0 < traced["rays"]["blocked"] < traced["rays"]["shadow"] <= most:
 
 with tempfile.TemporaryDirectory() as folder:
     file = pathlib.Path(folder) / "scene.dat"
-    output(to_tachyon, scene, str(file), *small)
+    output(penumbra, "export", scene, "-o", str(file), *small)
     words = file.read_text().split()
 meshes = [int(words[i + 1]) for i, word in enumerate(words) if word == "TRIMESH"]
 same("facets for Tachyon", sum(meshes) + words.count("TRI"), info["facets"])

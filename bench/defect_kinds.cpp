@@ -1,7 +1,5 @@
 #include "defect_kinds.h"
 
-#include "variation.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -49,8 +47,8 @@ Applies any_material(bool (*has)(const Material&)) {
     };
 }
 
-bool shines(const Material& m) { return m.specular > 0 || m.gloss; }
-bool mirrors(const Material& m) { return m.reflection != Color(0) || m.gloss; }
+bool shines(const Material& m) { return m.specular > 0 || m.specular_lobes; }
+bool mirrors(const Material& m) { return m.reflection != Color(0) || m.specular_lobes; }
 bool clear(const Material& m) { return m.opacity < 1; }
 bool bends(const Material& m) { return m.opacity < 1 && m.ior != 1; }
 bool glows(const Material& m) { return m.emission != Color(0); }
@@ -224,7 +222,7 @@ Image traced_twice(const Stage& stage) {
 }
 
 Image shadowless(const Stage& stage) {
-    return render_variation(stage.scene, stage.options, {.shadows = false});
+    return Tracer(stage.scene).render(stage.options, {.shadows = false});
 }
 
 // ---- the list ---------------------------------------------------------------------------------

@@ -1,6 +1,5 @@
 // Defects of the picture as a whole: moved, turned, of other colours.
 #include "defect_kinds.h"
-#include "variation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -82,7 +81,7 @@ std::vector<Defect> of_pictures() {
              {"shift"},
              always,
              [](const Stage& stage) {
-                 return render_variation(stage.scene, stage.options, {.dx = -0.3, .dy = 0.7});
+                 return Tracer(stage.scene).render(stage.options, {.dx = -0.3, .dy = 0.7});
              }},
             {"shifted by one pixel", {"shift"}, always, shifted_by_one},
             {"mirrored", {"mirror"}, always, rearranged(true, false)},

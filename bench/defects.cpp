@@ -9,9 +9,10 @@
 // of FILE.
 #include "defect_kinds.h"
 
+#include "penumbra/compare.h"
 #include "penumbra/exporters.h"
 #include "penumbra/importers.h"
-#include "penumbra/validation.h"
+#include "penumbra/povray.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

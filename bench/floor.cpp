@@ -4,6 +4,8 @@
 #include "arguments.h"
 #include "floor_scene.h"
 
+#include "penumbra/light_model.h"
+
 #include <fmt/format.h>
 #include <pmmintrin.h>
 

@@ -1,13 +1,14 @@
 #include "floor_scene.h"
 
 #include "penumbra/error.h"
+#include "penumbra/light_model.h"
 
 #include <string>
 
 namespace penumbra::bench {
 namespace {
 
-bool mirrors(const Material& m) { return m.reflection != Color(0) || m.gloss.has_value(); }
+bool mirrors(const Material& m) { return m.reflection != Color(0) || m.specular_lobes.has_value(); }
 
 void check(const Scene& scene) {
     for (const Material& m : scene.materials)

@@ -1,7 +1,7 @@
 // A scene as the floor needs it: in Embree, in float32, with what decides where rays go.
 #pragma once
 
-#include "embree.h"
+#include "tracer/accel/embree.h"
 
 #include "penumbra/scene.h"
 

@@ -47,7 +47,6 @@ def run(command, cpus, folder):
 class Tools:
     penumbra: Path
     floor: Path
-    to_tachyon: Path
     povray = shutil.which("povray")
     tachyon = shutil.which("tachyon")
 
@@ -68,12 +67,10 @@ class Case:
         self.folder.mkdir(parents=True, exist_ok=True)
         size = f"{self.size[0]}x{self.size[1]}"
         quietly = {"check": True, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-        if tools.povray:
-            subprocess.run([tools.penumbra, "export", self.scene, "--size", size,
-                            "-o", self.folder / "scene.pov"], **quietly)
-        if tools.tachyon:
-            subprocess.run([tools.to_tachyon, self.scene, self.folder / "scene.dat", "--set",
-                            f"render.size=[{self.size[0]},{self.size[1]}]"], **quietly)
+        for program, file in ((tools.povray, "scene.pov"), (tools.tachyon, "scene.dat")):
+            if program:
+                subprocess.run([tools.penumbra, "export", self.scene, "--size", size,
+                                "-o", self.folder / file], **quietly)
 
     def command(self, tools, program, threads):
         size = f"{self.size[0]}x{self.size[1]}"

@@ -1,9 +1,12 @@
 // All inputs of one picture -> one complete scene.
-#include "complete.h"
-#include "merge.h"
-#include "normal_map.h"
-#include "sidecar.h"
-#include "suggest.h"
+#include "base/text/text.h"
+#include "importers/fit_materials.h"
+#include "importers/shared/formats.h"
+#include "importers/shared/merge.h"
+#include "importers/sidecar/sidecar.h"
+#include "prepare/complete.h"
+#include "prepare/small_objects.h"
+#include "scene/transforms.h"
 
 #include <fmt/format.h>
 
@@ -16,25 +19,11 @@ namespace penumbra {
 
 namespace {
 
-// Of all meshes with normal maps together: POV-Ray reads about 100,000 facets a second.
-constexpr std::size_t most_baked_facets = 100'000;
-
 namespace fs = std::filesystem;
 
 bool is_there(const fs::path& file) {
     std::error_code ignored;
     return fs::exists(file, ignored);
-}
-
-std::string extension_of(const fs::path& file) {
-    std::string text = file.extension().string();
-    for (char& c : text)
-        if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
-    return text;
-}
-
-Imported read_model(const fs::path& file, const ModelOptions& options) {
-    return extension_of(file) == ".obj" ? read_obj(file, options) : read_gltf(file, options);
 }
 
 /// What is to be read, in the order in which it is laid over the scene.
@@ -49,18 +38,24 @@ struct Request {
     }
 };
 
+std::string known_extensions() {
+    std::vector<std::string> known = model_extensions();
+    known.emplace_back(".toml");
+    return listed(known, "and");
+}
+
 Request read_request(const std::vector<fs::path>& inputs, const LoadOptions& options) {
     Request request;
     for (const fs::path& input : inputs) {
         const std::string name = printable(input.string());
         if (!is_there(input)) throw Error(Failure::input, name, "no such file");
-        if (extension_of(input) == ".toml")
+        if (lower_extension(input) == ".toml")
             request.sidecars.push_back(read_sidecar(input));
         else if (is_model(input))
             request.models.push_back({.file = input});
         else
             throw Error(Failure::input, name,
-                        "unknown file format (supported are .gltf, .glb, .obj and .toml)");
+                        fmt::format("unknown file format (supported are {})", known_extensions()));
     }
     if (options.sidecar) request.sidecars.push_back(read_sidecar(*options.sidecar));
     for (const std::string& setting : options.settings)
@@ -96,7 +91,7 @@ bool scale_absorption(Scene& scene, double scale) {
 // Reads every file once for each material that it gets, and places it as often as it is named; one
 // that absorbs light also for each scale.
 std::vector<Replacement> load_models(const std::vector<Placement>& placements,
-                                     const ModelOptions& options, Imported& result) {
+                                     const LoadOptions& options, Imported& result) {
     std::map<std::tuple<fs::path, std::string, double>, Model> known;
     std::set<fs::path> absorbing;
     std::vector<Replacement> replacements;
@@ -109,7 +104,9 @@ std::vector<Replacement> load_models(const std::vector<Placement>& placements,
         const double scale = mean_scale(placement.transform());
         auto found = known.find({file, material, absorbing.contains(file) ? scale : 1});
         if (found == known.end()) {
-            Imported model = read_model(placement.file, options);
+            Imported model = read_model(placement.file, options.model);
+            if (options.sides)
+                for (Material& m : model.scene.materials) m.sides = *options.sides;
             const bool absorbs = scale_absorption(model.scene, scale);
             if (absorbs) absorbing.insert(file);
             const std::tuple key(file, material, absorbs ? scale : 1);
@@ -133,54 +130,16 @@ void replace_materials(const std::vector<Replacement>& replacements, Scene& scen
     }
 }
 
-bool has_image(const Scene& scene, Index material) {
-    return material < scene.materials.size() &&
-           std::holds_alternative<ImageMap>(scene.materials[material].pattern);
-}
-
-// An image needs texture coordinates: without them the mesh gets the material's plain colour.
-void drop_images_without_texcoords(Imported& result) {
-    Scene& scene = result.scene;
-    std::map<Index, Index> plain;
-    for (Mesh& mesh : scene.meshes) {
-        if (!mesh.texcoords.empty() || mesh.triangles.empty() || !has_image(scene, mesh.material))
-            continue;
-        const Material original = scene.materials[mesh.material];
-        const auto [entry, fresh] = plain.emplace(mesh.material, Index(scene.materials.size()));
-        if (fresh) {
-            scene.materials.push_back(original);
-            scene.materials.back().pattern = {};
-        }
-        mesh.material = entry->second;
-        result.losses.push_back(
-            {mesh.name.empty() ? "a mesh" : "mesh '" + mesh.name + "'",
-             fmt::format("has no texture coordinates for the texture of material '{}'; its plain "
-                         "colour is used",
-                         original.name)});
-    }
-}
-
-// Some images can only vary opaque surfaces; a sidecar may have made theirs translucent.
-void drop_maps_of_translucent_materials(Imported& result) {
-    for (Material& m : result.scene.materials) {
-        if (m.opacity == 1 || (!m.gloss && !m.emission_map)) continue;
-        m.gloss.reset();
-        m.emission_map.reset();
-        result.losses.push_back({fmt::format("material '{}'", m.name),
-                                 "its gloss and emission images are dropped: it is translucent"});
-    }
-}
-
 // A setting of a material that nobody has is a typing error.
 void check_used(const NewMaterials& made, const Scene& scene) {
     for (const auto& [index, reference] : made) {
         // By name: a copy without the image is the same material.
-        const auto wears = [&, &name = reference.name](const auto& thing) {
+        const auto uses_it = [&, &name = reference.name](const auto& thing) {
             return scene.materials[thing.material].name == name;
         };
-        if (std::any_of(scene.meshes.begin(), scene.meshes.end(), wears) ||
-            std::any_of(scene.spheres.begin(), scene.spheres.end(), wears) ||
-            std::any_of(scene.planes.begin(), scene.planes.end(), wears))
+        if (std::any_of(scene.meshes.begin(), scene.meshes.end(), uses_it) ||
+            std::any_of(scene.spheres.begin(), scene.spheres.end(), uses_it) ||
+            std::any_of(scene.planes.begin(), scene.planes.end(), uses_it))
             continue;
         Scene others;
         for (std::size_t i = 0; i < scene.materials.size(); ++i)
@@ -193,7 +152,18 @@ void set_penumbra(Scene& scene, double delta) {
     for (Light& light : scene.lights) light.penumbra.delta = delta;
 }
 
-void lay_layers(const Request& request, const ModelOptions& options, Imported& result) {
+// Nobody says how large the picture is to be: as large as the usual one allows, with the shape that
+// the camera's author had in mind.
+void take_shape(const Camera& camera, RenderOptions& render) {
+    if (camera.aspect == 0) return;
+    const double width = std::min<double>(render.width, render.height * camera.aspect);
+    const double height = width / camera.aspect;
+    render.width = std::max(1, int(std::lround(width)));
+    render.height = std::max(1, int(std::lround(height)));
+}
+
+// Returns the bounds of what they lay.
+Bounds lay_layers(const Request& request, const LoadOptions& options, Imported& result) {
     Scene& scene = result.scene;
     TextureFiles files;
     NewMaterials made;
@@ -201,11 +171,13 @@ void lay_layers(const Request& request, const ModelOptions& options, Imported& r
     result.auto_exposure = !scene.lights.empty();  // a glTF file's
     request.for_each_layer([&](const Layer& layer) { lay_materials(layer, scene, files, made); });
     replace_materials(replacements, scene);
+    bool sized = false;
     request.for_each_layer([&](const Layer& layer) {
-        lay_globals(layer, result, files);
+        sized |= lay_globals(layer, result, files);
         lay_objects(layer, scene);
         lay_lights(layer, scene);
     });
+    for (const auto& [file, texture] : files) result.files.push_back(file);
     drop_images_without_texcoords(result);
     drop_maps_of_translucent_materials(result);
 
@@ -214,53 +186,62 @@ void lay_layers(const Request& request, const ModelOptions& options, Imported& r
     CameraAims aims;
     request.for_each_layer(
         [&](const Layer& layer) { lay_camera(layer, scene, aims, box, aspect); });
+    if (!sized && scene.camera != no_index) take_shape(scene.cameras[scene.camera], result.render);
     complete(scene, aspect);
+    if (const std::size_t count = lift_back_to_back_facets(scene); count > 0)
+        result.losses.push_back(
+            {Loss::approximated, "facets",
+             fmt::format("{} that lie back to back are moved apart by a little, "
+                         "each towards the side that it shows",
+                         count)});
     if (const std::size_t count = drop_coincident_facets(scene); count > 0)
         result.losses.push_back(
-            {"facets", fmt::format("{} that lie exactly on others are left out: which of them "
-                                   "shows would be a matter of rounding",
-                                   count)});
+            {Loss::approximated, "facets",
+             fmt::format("{} that lie exactly on others are left out: which of them "
+                         "shows would be a matter of rounding",
+                         count)});
+    const Losses parted = part_surfaces(scene);
+    result.losses.insert(result.losses.end(), parted.begin(), parted.end());
     check_used(made, scene);
     // After complete(), so that the rig's lights can be changed as well.
     for (const Layer& layer : request.settings) edit_lights(layer, scene);
+    return box;
 }
 
 }  // namespace
 
-bool is_model(const fs::path& file) {
-    const std::string extension = extension_of(file);
-    return extension == ".gltf" || extension == ".glb" || extension == ".obj";
-}
-
-Losses settle_normal_maps(Scene& scene, NormalMaps choice) {
-    switch (choice) {
-    case NormalMaps::bake: return bake_normal_maps(scene, {.facets = most_baked_facets});
-    case NormalMaps::drop: return drop_normal_maps(scene);
-    case NormalMaps::pixel: complete_tangents(scene); break;
-    }
-    return {};
-}
-
 Imported load_scene(const std::vector<fs::path>& inputs, const LoadOptions& options) {
     if (inputs.empty() && !options.sidecar) throw Error(Failure::usage, "", "no input is given");
     if (options.penumbra && !(std::isfinite(*options.penumbra) && *options.penumbra >= 0))
-        throw Error(Failure::usage, "--penumbra",
+        throw Error(Failure::usage, "penumbra",
                     fmt::format("must be a finite number of 0 or more, not {}", *options.penumbra));
     for (const fs::path& folder : options.model.allowed_paths)
         if (std::error_code ignored; !fs::is_directory(folder, ignored))
-            throw Error(Failure::usage, "--allow-path",
+            throw Error(Failure::usage, "allowed_paths",
                         fmt::format("'{}' is not a folder", printable(folder.string())));
     const Request request = read_request(inputs, options);
     Imported result;
-    lay_layers(request, options.model, result);
+    const Bounds box = lay_layers(request, options, result);
+    result.files.insert(result.files.end(), inputs.begin(), inputs.end());
+    if (options.sidecar) result.files.push_back(*options.sidecar);
+    std::ranges::sort(result.files);
+    const auto again = std::ranges::unique(result.files);
+    result.files.erase(again.begin(), again.end());
     for (const Layer& layer : request.sidecars)
         result.models.push_back({.file = layer.name, .format = "sidecar"});
     if (options.penumbra) set_penumbra(result.scene, *options.penumbra);
     if (const auto found = defects(result.scene); !found.empty())
         throw Error(Failure::input, inputs.empty() ? options.sidecar->string() : inputs[0].string(),
                     found[0]);
+    const Losses by_size =
+        losses_by_size(result.scene, box, result.render.width, result.render.height);
+    result.losses.insert(result.losses.end(), by_size.begin(), by_size.end());
     const Losses settled = settle_normal_maps(result.scene, options.normal_maps);
     result.losses.insert(result.losses.end(), settled.begin(), settled.end());
+    // What keeps its normal maps is not final: nothing of it can be exported.
+    if (options.normal_maps == NormalMaps::pixel) return result;
+    const Losses backs = shown_backs(result.scene);
+    result.losses.insert(result.losses.end(), backs.begin(), backs.end());
     return result;
 }
 

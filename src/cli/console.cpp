@@ -1,6 +1,7 @@
-#include "console.h"
+#include "cli/console.h"
 
-#include "plain_text.h"
+#include "base/loss_tally.h"
+#include "base/text/text.h"
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
@@ -13,7 +14,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
-#include <unordered_map>
 
 namespace penumbra::cli {
 namespace {
@@ -51,29 +51,7 @@ std::string rate(double per_second, const std::string& unit) {
     return fmt::format("{:.1f} {}/s", per_second, unit);
 }
 
-template <class Key>
-std::vector<LossGroup> grouped(const Losses& losses, const Key& key) {
-    std::vector<LossGroup> groups;
-    std::unordered_map<std::string, std::size_t> known;
-    for (const Loss& loss : losses) {
-        const auto [entry, fresh] = known.emplace(key(loss), groups.size());
-        if (fresh)
-            groups.push_back({loss, 1});
-        else
-            ++groups[entry->second].count;
-    }
-    return groups;
-}
-
 }  // namespace
-
-std::vector<LossGroup> equal_losses(const Losses& losses) {
-    return grouped(losses, [](const Loss& loss) { return loss.place + '\n' + loss.what; });
-}
-
-std::vector<LossGroup> similar_losses(const Losses& losses) {
-    return grouped(losses, [](const Loss& loss) { return loss.what; });
-}
 
 struct Console::Bar {
     std::string work, unit;
@@ -82,36 +60,29 @@ struct Console::Bar {
 };
 
 Console::Console(const ConsoleOptions& chosen)
-    : options(chosen), terminal(isatty(STDERR_FILENO) == 1),
-      colored(chosen.color.value_or(terminal && environment_wants_color())) {}
+    : options_(chosen), terminal_(isatty(STDERR_FILENO) == 1),
+      colored_(chosen.color.value_or(terminal_ && environment_wants_color())) {}
 
 void Console::error(const std::string& text) { line(red, "error: ", text); }
 
 void Console::internal_error(const std::string& text) { line(red, "internal error: ", text); }
 
 void Console::warning(const std::string& text) {
-    if (!options.quiet) line(yellow, "warning: ", text);
+    if (!options_.quiet) line(yellow, "warning: ", text);
 }
 
 void Console::detail(const std::string& text) {
-    if (options.verbose && !options.quiet) line(faint, "", text);
+    if (options_.verbose && !options_.quiet) line(faint, "", text);
 }
 
 void Console::losses(const Losses& list) {
-    if (options.verbose) {
-        for (const auto& [loss, count] : equal_losses(list))
-            warning(loss.place + ": " + loss.what +
-                    (count > 1 ? fmt::format(" ({} times)", count) : ""));
-        return;
-    }
-    for (const auto& [loss, count] : similar_losses(list))
-        warning(loss.place + ": " + loss.what +
-                (count > 1 ? fmt::format(" (and {} more)", count - 1) : ""));
+    for (const Loss& loss : options_.verbose ? merged(list) : merged_places(list))
+        warning(loss.place + ": " + loss.what);
 }
 
 void Console::result(const std::string& made) {
     const std::string text = plain_lines(made);
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(mutex_);
     clear_bar();
     errno = 0;
     const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
@@ -120,17 +91,17 @@ void Console::result(const std::string& made) {
 }
 
 void Console::line(const char* color, const char* kind, const std::string& text) {
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(mutex_);
     clear_bar();
     const std::string whole =
-        colored ? fmt::format("{}penumbra: {}{}{}\n", color, kind, normal, one_line(text))
-                : fmt::format("penumbra: {}{}\n", kind, one_line(text));
+        colored_ ? fmt::format("{}penumbra: {}{}{}\n", color, kind, normal, one_line(text))
+                 : fmt::format("penumbra: {}{}\n", kind, one_line(text));
     std::fwrite(whole.data(), 1, whole.size(), stderr);
 }
 
 std::function<void(double)> Console::progress(const std::string& work, double units,
                                               const std::string& unit) {
-    if (!terminal || options.quiet) return {};
+    if (!terminal_ || options_.quiet) return {};
     auto bar = std::make_shared<Bar>();
     bar->work = one_line(work);
     bar->unit = unit;
@@ -140,7 +111,7 @@ std::function<void(double)> Console::progress(const std::string& work, double un
 
 void Console::draw(Bar& bar, double done) {
     constexpr auto pause = std::chrono::milliseconds(100);
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(mutex_);
     const auto now = Clock::now();
     if (now - bar.drawn < pause) return;
     bar.drawn = now;
@@ -158,17 +129,17 @@ void Console::draw(Bar& bar, double done) {
                                          filled, "", width - filled, right);
     std::fwrite(text.data(), 1, text.size(), stderr);
     std::fflush(stderr);
-    bar_drawn = true;
+    bar_drawn_ = true;
 }
 
 void Console::clear_progress() {
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(mutex_);
     clear_bar();
 }
 
 void Console::clear_bar() {
-    if (bar_drawn) std::fputs(erase_line, stderr);
-    bar_drawn = false;
+    if (bar_drawn_) std::fputs(erase_line, stderr);
+    bar_drawn_ = false;
 }
 
 }  // namespace penumbra::cli

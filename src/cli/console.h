@@ -11,17 +11,6 @@
 
 namespace penumbra::cli {
 
-/// Losses that are alike, as one.
-struct LossGroup {
-    Loss loss = {};
-    std::size_t count = 1;
-};
-
-/// Equal losses together, in the order of their first one.
-std::vector<LossGroup> equal_losses(const Losses& losses);
-/// Losses that say the same of several places together; `loss` names the first place.
-std::vector<LossGroup> similar_losses(const Losses& losses);
-
 struct ConsoleOptions {
     bool quiet = false, verbose = false;
     std::optional<bool> color = {};  ///< absent: on a terminal, unless NO_COLOR is set
@@ -41,7 +30,7 @@ class Console {
     /// Writes lines to standard output at once. Throws Error (output) when that fails.
     void result(const std::string& made);
 
-    bool quiet() const { return options.quiet; }
+    bool quiet() const { return options_.quiet; }
 
     /// A function for Watch::progress that draws a bar, or an empty one where none is wanted.
     /// `work` names what is done; `units` of `unit` are the whole of it, for the rate.
@@ -52,9 +41,9 @@ class Console {
 
   private:
     struct Bar;
-    ConsoleOptions options;
-    bool terminal = false, colored = false, bar_drawn = false;
-    std::mutex mutex;
+    ConsoleOptions options_;
+    bool terminal_ = false, colored_ = false, bar_drawn_ = false;
+    std::mutex mutex_;
 
     void line(const char* color, const char* kind, const std::string& text);
     void draw(Bar& bar, double done);

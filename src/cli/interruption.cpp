@@ -1,4 +1,4 @@
-#include "interruption.h"
+#include "cli/interruption.h"
 
 #include "penumbra/error.h"
 
@@ -53,7 +53,7 @@ char next_byte() {
     ::_exit(exit_interrupted);
 }
 
-void watch(std::stop_source source) {
+void watch(const std::stop_source& source) {
     if (next_byte() != 's') return;
     source.request_stop();
     pollfd end = {ends[0], POLLIN, 0};
@@ -62,12 +62,12 @@ void watch(std::stop_source source) {
 }
 
 void handle(void (*handler)(int)) {
-    struct sigaction action {};
+    struct sigaction action{};
     action.sa_handler = handler;
     sigemptyset(&action.sa_mask);
     action.sa_flags = SA_RESTART;
     for (const int number : signals) {
-        struct sigaction before {};
+        struct sigaction before{};
         sigaction(number, nullptr, &before);
         if (before.sa_handler != SIG_IGN) sigaction(number, &action, nullptr);  // nohup stays
     }
@@ -91,7 +91,7 @@ Interruption::Interruption() {
     if (::pipe2(ends.data(), O_CLOEXEC) != 0)
         throw std::runtime_error(std::string("no pipe: ") + std::strerror(errno));
     ::fcntl(ends[1], F_SETFL, O_NONBLOCK);
-    watcher = std::jthread(watch, source);
+    watcher_ = std::jthread(watch, source_);
     handle(note_signal);
 }
 
@@ -99,7 +99,7 @@ Interruption::~Interruption() {
     handle(SIG_DFL);
     const char byte = 'e';
     [[maybe_unused]] const auto ignored = ::write(ends[1], &byte, 1);
-    watcher.join();
+    watcher_.join();
     for (const int end : ends) ::close(end);
 }
 

@@ -21,11 +21,11 @@ class Interruption {
     Interruption(const Interruption&) = delete;
     Interruption& operator=(const Interruption&) = delete;
 
-    std::stop_token token() const { return source.get_token(); }
+    std::stop_token token() const { return source_.get_token(); }
 
   private:
-    std::stop_source source;
-    std::jthread watcher;
+    std::stop_source source_;
+    std::jthread watcher_;
 };
 
 }  // namespace penumbra::cli

@@ -1,9 +1,11 @@
 // The program: command line -> one command -> exit status.
-#include "commands.h"
-#include "interruption.h"
-#include "memory_bound.h"
+#include "cli/advice.h"
+#include "cli/context.h"
+#include "cli/interruption.h"
+#include "cli/memory_bound.h"
+#include "cli/options/parse.h"
 
-#include "penumbra/image.h"
+#include "penumbra/image_module.h"
 
 #include <tbb/global_control.h>
 
@@ -49,7 +51,7 @@ int guarded(Console& console, Work work) {
     try {
         return work();
     } catch (const Error& error) {
-        console.error(error.what());
+        console.error(with_advice(error));
         return exit_status(error.failure);
     } catch (const std::bad_alloc&) {
         console.error(out_of_memory());

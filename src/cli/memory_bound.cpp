@@ -1,6 +1,6 @@
-#include "memory_bound.h"
+#include "cli/memory_bound.h"
 
-#include "src/memory.h"
+#include "base/memory.h"
 
 #include "penumbra/limits.h"
 
@@ -25,9 +25,9 @@ constexpr bool sanitized = false;
 }  // namespace
 
 void bound_memory(std::size_t limit) {
+    if (limit == 0) limit = free_memory() / 4 * 3;
     set_memory_limit(limit);
-    limit = memory_limit();
-    if (sanitized) return;
+    if (sanitized || limit == 0) return;
     // RLIMIT_DATA counts what is mapped and not what is used: stacks and pools are larger than they
     // will ever be filled.
     const std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
@@ -39,6 +39,7 @@ void bound_memory(std::size_t limit) {
 }
 
 std::string out_of_memory() {
+    if (memory_limit() == 0) return "not enough memory";
     return fmt::format("not enough memory: {} may be used (raise it with --max-memory)",
                        memory_text(memory_limit()));
 }

@@ -1,6 +1,7 @@
-#include "steps.h"
+#include "cli/steps.h"
 
-#include "plain_text.h"
+#include "base/loss_tally.h"
+#include "base/text/text.h"
 
 #include "penumbra/image.h"
 #include "penumbra/tracer.h"
@@ -17,13 +18,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A message about a setting that stands for an option names the option.
-std::string in_users_words(const Arguments& arguments, const std::string& message) {
-    for (const auto& [setting, typed] : arguments.origins) {
-        const std::string prefix = "--set " + setting;
-        if (message.starts_with(prefix)) return typed + message.substr(prefix.size());
+// Messages about the library's options name ours: --set, or the option that a setting stands for.
+std::string in_users_words(const Arguments& arguments, const LoadOptions& options,
+                           const Error& error) {
+    const std::string message = error.what();
+    const auto renamed = [&](const std::string& place, const std::string& ours) {
+        return message.starts_with(place + ": ") ? ours + message.substr(place.size()) : "";
+    };
+    for (const std::string& setting : options.settings) {
+        const auto origin = arguments.origins.find(setting);
+        const std::string typed =
+            origin == arguments.origins.end() ? "--set " + printable(setting) : origin->second;
+        std::string text = renamed("setting '" + printable(setting) + "'", typed);
+        if (!text.empty()) return text;
     }
-    return message;
+    const std::string text = renamed("allowed_paths", "--allow-path");
+    return text.empty() ? message : text;
 }
 
 void expose(const Context& context, Imported& imported) {
@@ -48,7 +58,7 @@ Imported load(const Context& context, const std::vector<fs::path>& inputs,
         if (imported.auto_exposure) expose(context, imported);
         return imported;
     } catch (const Error& error) {
-        throw Error(error.failure, "", in_users_words(arguments, error.what()));
+        throw Error(error.failure, "", in_users_words(arguments, options, error), error.remedy);
     }
 }
 
@@ -128,8 +138,11 @@ Rendered render_scene(const Context& context, const NormalisedScene& scene,
 
 nlohmann::ordered_json losses_json(const Losses& losses) {
     auto list = nlohmann::ordered_json::array();
-    for (const auto& [loss, count] : equal_losses(losses))
-        list.push_back({{"place", loss.place}, {"what", loss.what}, {"count", count}});
+    for (const Loss& loss : merged(losses))
+        list.push_back({{"place", loss.place},
+                        {"what", loss.what},
+                        {"kind", to_string(loss.kind)},
+                        {"count", loss.count}});
     return list;
 }
 

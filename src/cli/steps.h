@@ -1,7 +1,7 @@
 // The steps that several commands share.
 #pragma once
 
-#include "commands.h"
+#include "cli/context.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -14,11 +14,11 @@ namespace penumbra::cli {
 class Stopwatch {
   public:
     double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     }
 
   private:
-    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 /// The scene of `inputs` with all that `options`, else the command line, lays over it. Throws
@@ -55,7 +55,7 @@ Rendered render_scene(const Context& context, const NormalisedScene& scene,
 /// Samples in a whole picture, for the rate of the progress bar.
 double sample_count(const RenderOptions& options);
 
-/// [{"place", "what", "count"}], equal ones together.
+/// [{"place", "what", "kind", "count"}], equal ones together.
 nlohmann::ordered_json losses_json(const Losses& losses);
 
 /// `document` as text, with what is no UTF-8 replaced and what a terminal may obey escaped.

@@ -1,4 +1,4 @@
-#include "supervisor.h"
+#include "cli/supervisor.h"
 
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -30,7 +30,7 @@ extern "C" void hand_on(int number, siginfo_t* info, void*) {
 }
 
 void handle(void (*handler)(int, siginfo_t*, void*)) {
-    struct sigaction action {};
+    struct sigaction action{};
     sigemptyset(&action.sa_mask);
     action.sa_flags = SA_RESTART | (handler != nullptr ? SA_SIGINFO : 0);
     if (handler != nullptr)
@@ -38,7 +38,7 @@ void handle(void (*handler)(int, siginfo_t*, void*)) {
     else
         action.sa_handler = SIG_DFL;
     for (const int number : signals) {
-        struct sigaction before {};
+        struct sigaction before{};
         sigaction(number, nullptr, &before);
         if (before.sa_handler != SIG_IGN) sigaction(number, &action, nullptr);  // nohup stays
     }
@@ -67,17 +67,17 @@ Progress::Progress() {
                                 MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED) throw std::system_error(errno, std::generic_category(), "mmap");
     static_assert(std::atomic<int>::is_always_lock_free && int(open) == 0);
-    states = static_cast<std::atomic<int>*>(memory);  // zeros
+    states_ = static_cast<std::atomic<int>*>(memory);  // zeros
 }
 
-Progress::~Progress() { ::munmap(states, most * sizeof(std::atomic<int>)); }
+Progress::~Progress() { ::munmap(states_, most * sizeof(std::atomic<int>)); }
 
 bool Progress::note_crash() {
     bool any = false;
     for (std::size_t i = 0; i < most; ++i) {
-        const int state = states[i];
+        const int state = states_[i];
         if (state != running && state != running_alone) continue;
-        states[i] = state == running ? suspect : crashed;
+        states_[i] = state == running ? suspect : crashed;
         any = true;
     }
     return any;

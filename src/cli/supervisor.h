@@ -25,7 +25,7 @@ class Progress {
     Progress& operator=(const Progress&) = delete;
 
     /// Jobs beyond `most` share the last place, and are not told apart.
-    std::atomic<int>& operator[](std::size_t job) { return states[job < most ? job : most - 1]; }
+    std::atomic<int>& operator[](std::size_t job) { return states_[job < most ? job : most - 1]; }
 
     /// Whom a crash concerns: what was running beside others becomes a suspect, what was running
     /// alone has crashed. False when nothing was running.
@@ -33,7 +33,7 @@ class Progress {
 
   private:
     static constexpr std::size_t most = 1 << 16;
-    std::atomic<int>* states = nullptr;
+    std::atomic<int>* states_ = nullptr;
 };
 
 /// Runs `work` in a child process, again after every crash in which a job was running, and returns

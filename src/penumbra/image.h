@@ -1,7 +1,8 @@
 // Pictures: linear float images, textures in their own bit depth, and their files.
 //
 // Every format but PNG goes through OpenImageIO, which lives in a module that is loaded when the
-// first function of this header that touches a file is called (it costs 0.3 s to start).
+// first function of this header that touches a file is called (it costs 0.3 s to start; see
+// penumbra/image_module.h).
 #pragma once
 
 #include "penumbra/math.h"
@@ -41,11 +42,6 @@ struct Raster {
     std::size_t texels() const { return std::size_t(width) * std::size_t(height); }
 };
 
-/// sRGB decoding of one channel, IEC 61966-2-1, in float32 exactly as POV-Ray does it.
-float srgb_to_linear(float encoded);
-/// sRGB encoding of one linear channel; no clamping (negative values map linearly).
-float linear_to_srgb(float linear);
-
 /// Reads any image file as linear RGB: 8 and 16 bit integers are sRGB-decoded, floats are taken as
 /// linear. Alpha is dropped. Throws Error (input).
 Image load_image(const std::filesystem::path& file);
@@ -63,22 +59,18 @@ bool can_save_image(const std::filesystem::path& file);
 
 /// Writes `image` in the format of the extension: .exr (float32) and .hdr linear and unclamped (but
 /// .hdr has no negative values), the others clamped to [0, 1] and sRGB-encoded. Written beside the
-/// target and renamed, so that a failure leaves what was there. Throws Error (output).
+/// target and renamed, so that a failure leaves what was there. Precondition: image.pixels has
+/// width * height elements. Throws Error (output), of an empty picture too.
 void save_image(const std::filesystem::path& file, const Image& image,
                 const SaveOptions& options = {});
 
-/// Writes `raster` as it is, as .png (u8, u16) or .exr (f32). Throws Error (output).
-void save_raster(const std::filesystem::path& file, const Raster& raster);
+/// Writes `raster` as it is, as .png (u8, u16) or .exr (f32), with `comment`, ASCII, near the
+/// beginning of the file unless it is empty. Precondition: its data are as long as its size says.
+/// Throws Error (output), of an empty picture too.
+void save_raster(const std::filesystem::path& file, const Raster& raster,
+                 const std::string& comment = "");
 
-/// `image` as an 8-bit sRGB PNG in memory, for embedding in a report.
+/// `image` as an 8-bit sRGB PNG in memory, for embedding in a report. Throws Error (output).
 std::vector<std::byte> encode_png(const Image& image);
-
-/// Begins to load the image module in the background, so that a later call need not wait. A program
-/// that does so must not end before wait_for_image_module() has returned.
-void preload_image_module();
-
-/// Waits until what preload_image_module() began is done, if it was called. Ending the process
-/// earlier would run the destructors of libraries whose constructors are still at work.
-void wait_for_image_module();
 
 }  // namespace penumbra

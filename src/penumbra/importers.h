@@ -2,19 +2,32 @@
 #pragma once
 
 #include "penumbra/error.h"
+#include "penumbra/prepare.h"
+#include "penumbra/render_options.h"
 #include "penumbra/scene.h"
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace penumbra {
 
+/// A kind of model files that load_scene() reads.
+struct Format {
+    std::string name = {};                     ///< "glTF 2.0"
+    std::vector<std::string> extensions = {};  ///< in lower case: ".gltf", ".glb"
+};
+
+/// All of them. Sidecars (.toml) are none: they are laid over models.
+std::span<const Format> formats();
+
 /// What a model file holds besides its Scene.
 struct ModelInfo {
     std::string file = {};    ///< as the user wrote it
-    std::string format = {};  ///< "glTF 2.0", "OBJ", "sidecar"
+    std::string format = {};  ///< Format::name, or "sidecar"
     std::size_t nodes = 0, animations = 0;
     std::vector<std::string> extensions = {};  ///< used by the file
 };
@@ -26,47 +39,71 @@ struct Imported {
     /// a glTF file, in physical units, and nobody says how to expose it.
     bool auto_exposure = false;
     std::vector<ModelInfo> models = {};
+    /// The files that it comes from: those that were read, and those that models name besides,
+    /// wherever they are there. None of them may be overwritten: see ExportOptions::inputs.
+    std::vector<std::filesystem::path> files = {};
     Losses losses = {};  ///< what the files said that Scene cannot hold
 };
 
-/// Which of the pictures that a model file can give is wanted, and what it may read for that. Only
-/// `allowed_paths` matters to OBJ files.
+/// Which of the pictures that a model file can give is wanted, and what it may read for that: to
+/// OBJ files only the latter matters.
 struct ModelOptions {
-    std::string scene = {};           ///< name or number; empty: the file's default
-    std::string variant = {};         ///< KHR_materials_variants, by name; empty: none
-    std::string animation = {};       ///< name or number; empty: the first
-    std::optional<double> time = {};  ///< seconds; without it and `animation` the nodes' own pose
-    /// Folders below which a model may name files, besides its own.
+    std::string scene = {};      ///< name or number; empty: the file's default
+    std::string variant = {};    ///< KHR_materials_variants, by name; empty: none
+    std::string animation = {};  ///< name or number; empty: the first
+    /// Seconds, finite; without it and `animation` the nodes' own pose.
+    std::optional<double> time = {};
+    /// Folders below which a model may name files, besides its own. A model in memory has none of
+    /// its own.
     std::vector<std::filesystem::path> allowed_paths = {};
+    /// How a program's user allows one, for messages about files that lie elsewhere.
+    std::string how_to_allow = {};
 };
 
-/// Reads glTF 2.0, .gltf or .glb. The scene has only what the file says. Throws Error (input; usage
-/// where `options` name something that the file does not have).
+// The readers give a scene with only what the file says; complete() makes a picture of it. They
+// throw Error
+// - (input) where the file, or a buffer that it needs, is missing, cannot be opened, has more than
+//   4 GiB, is malformed, needs what penumbra cannot do, or needs more memory than memory_limit()
+//   leaves; the place names the file and where in it. Images and MTL files that cannot be had, and
+//   files that the model may not read, are losses, unless it is a buffer of a glTF file;
+// - (usage) where ModelOptions name a scene, variant or animation that the file does not have, or a
+//   time that is not finite.
+// What no limit foresees may end in std::bad_alloc.
+//
+// A model in memory is `bytes`, which need to live during the call only. `name` stands for its file
+// in messages and in ModelInfo, and files that it refers to are looked for relative to the folder
+// of `name`, as if it lay there. It reads none of them but those below ModelOptions::allowed_paths:
+// with that folder in it the scene is that of the file, without it a model must bring everything in
+// its GLB chunk or in data: URIs.
+
+/// Reads glTF 2.0, .gltf or .glb.
 Imported read_gltf(const std::filesystem::path& file, const ModelOptions& options = {});
+Imported read_gltf(std::span<const std::byte> bytes, const std::string& name,
+                   const ModelOptions& options = {});
 
-/// Reads Wavefront OBJ with its MTL files. Throws Error (input).
+/// Reads Wavefront OBJ with its MTL files. Of `options` only `allowed_paths` matters.
 Imported read_obj(const std::filesystem::path& file, const ModelOptions& options = {});
-
-/// What becomes of normal maps, which POV-Ray does not have.
-enum class NormalMaps {
-    bake,   ///< vertex normals: bake_normal_maps()
-    drop,   ///< left out: drop_normal_maps()
-    pixel,  ///< kept, for render(): an export leaves them out. Missing tangents are computed
-};
-
-/// Does so. Precondition: that of bake_normal_maps().
-Losses settle_normal_maps(Scene& scene, NormalMaps choice);
+Imported read_obj(std::span<const std::byte> bytes, const std::string& name,
+                  const ModelOptions& options = {});
 
 struct LoadOptions {
     std::optional<std::filesystem::path> sidecar = {};  ///< laid over the inputs
-    std::vector<std::string> settings = {};             ///< "render.samples=3": any sidecar key
-    std::optional<double> penumbra = {};                ///< delta of every source; 0: none
+    /// "render.samples=3": any sidecar key. Errors say "setting 'render.samples=3': ...".
+    std::vector<std::string> settings = {};
+    std::optional<double> penumbra = {};  ///< delta of every source; 0: none
+    /// Material::sides of all models, in place of what they say; sidecars and settings lie over it.
+    std::optional<Sides> sides = {};
     ModelOptions model = {};
     NormalMaps normal_maps = NormalMaps::bake;
 };
 
-/// Reads models (.gltf, .glb, .obj) and sidecars (.toml) into one scene, lays sidecars and settings
-/// over it, in the order given, and completes it (see complete()). Throws Error (input, usage).
+/// Reads models (see formats()) and sidecars (.toml) into one scene, lays sidecars and settings
+/// over it, in the order given, and completes it (see complete()); defects() finds nothing in what
+/// is returned. Throws Error
+/// - (usage) without any input; where `penumbra` is negative or not finite, an allowed path is no
+///   folder, or a setting is malformed or names what is not there; and as the readers;
+/// - (input) where an input is missing or of no known format, a sidecar is malformed or names what
+///   is not there, or the scene has defects(); and as the readers.
 Imported load_scene(const std::vector<std::filesystem::path>& inputs,
                     const LoadOptions& options = {});
 

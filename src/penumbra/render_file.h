@@ -2,7 +2,9 @@
 #pragma once
 
 #include "penumbra/image.h"
-#include "penumbra/scene.h"
+#include "penumbra/prepare.h"
+#include "penumbra/render_options.h"
+#include "penumbra/tracer.h"
 #include "penumbra/watch.h"
 
 #include <filesystem>
@@ -20,9 +22,14 @@ struct RenderFileOptions {
     /// rendered again, which takes less than 1 / share times as long as keeping them. A run that
     /// goes on from a checkpoint keeps all rows.
     double checkpoint_share = 0.01;
-    bool resume = false;  ///< go on from the checkpoint of an earlier, interrupted call
-    /// Gives one line that changes with the program: another one's checkpoint is not used. Asked
-    /// only once there is a checkpoint.
+    /// Go on from the checkpoint of an earlier, interrupted call with the same scene and options. A
+    /// checkpoint of another picture is an error that names what differs, and stays.
+    bool resume = false;
+    /// Told how many rows a checkpoint had, before the others are rendered. What Watch::progress
+    /// says counts these others alone.
+    std::function<void(int rows)> resumed = {};
+    /// Gives one line that changes with the program: another one's checkpoint is another picture's.
+    /// Asked only once there is a checkpoint.
     std::function<std::string()> program = {};
 };
 
@@ -34,8 +41,13 @@ struct RenderedFile {
 };
 
 /// Renders to `file` as render() and save_image() do, with the same bytes whether it was
-/// interrupted and resumed or not. The file appears when it is whole. Throws Error (output,
+/// interrupted and resumed or not. The file appears when it is whole. Precondition:
+/// defects(scene.scene).empty(). Throws Error (usage: see RenderOptions; input: not enough memory,
+/// a checkpoint of another picture; output, also where another process writes the checkpoint;
 /// interrupted).
+RenderedFile render_file(const Tracer& tracer, const RenderOptions& options,
+                         const std::filesystem::path& file,
+                         const RenderFileOptions& file_options = {}, const Watch& watch = {});
 RenderedFile render_file(const NormalisedScene& scene, const RenderOptions& options,
                          const std::filesystem::path& file,
                          const RenderFileOptions& file_options = {}, const Watch& watch = {});

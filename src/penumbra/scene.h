@@ -3,16 +3,19 @@
 // Conventions, stated once. Right-handed, y up, as glTF. Angles are radians, lengths the user's
 // units. Colours are linear RGB. Texture coordinates: u to the right, v up, (0, 0) is the lower
 // left corner of the image (as OBJ and POV-Ray; glTF's v is flipped on import). Things refer to
-// each other by Index. Facets, planes and spheres are two-sided; winding has no meaning.
+// each other by Index. Planes and spheres are two-sided, facets as their Material says.
 //
 // The light that leaves a surface towards the eye (the light model of POV-Ray 3.7):
 //   P (K_A Ia) + E + sum over virtual sources of f_a Ip (P K_D N.L + M K_S (R.V)^N) + K_R reflected
+//                  + sum over virtual sources behind the surface of f_a Ip K_T |N.L|
 // where P is the pigment (color x texture x vertex colour, or a pattern), N is turned toward the
 // eye, R is the mirrored eye ray, and M = 1 + metallic (1 - F)(P - 1) with POV-Ray's curve F;
-// beside a texture, vertex colours are left out of M. With opacity a < 1 the ambient, emitted and
-// diffuse terms are scaled by a; of what lies behind, (1 - a)(1 - t + t P) is added, t being the
-// transmission; highlights and reflection are not scaled. Material::coverage fades everything, as a
-// hole does. Shadow rays are filtered by the same factors.
+// beside a texture, vertex colours are left out of M. Where a surface has a specular_color, that
+// takes P's place in M, and `metallic` is 1 in the M of the highlight. With opacity a < 1 the
+// ambient, emitted and diffuse terms, K_T too, are scaled by a; of what lies behind, (1 - a)(1 - t
+// + t P) is added, t being the transmission; highlights and reflection are not scaled.
+// Material::alpha_map fades everything, as a hole does. Shadow rays are filtered by the same
+// factors.
 #pragma once
 
 #include "penumbra/error.h"
@@ -76,24 +79,25 @@ using Pattern = std::variant<std::monostate, ImageMap, Checker, Noise>;
 /// With a cutoff it is there where c >= cutoff, and nowhere else. The texture is linear. Without a
 /// cutoff c is multiplied by Mesh::alphas, and vertex colours are interpolated with these as
 /// weights (premultiplied), as POV-Ray mixes the textures of vertices.
-struct Coverage {
+struct AlphaMap {
     ImageMap map = {};  ///< no texture: 1 everywhere
     std::optional<float> cutoff = {};
 };
 
-/// Highlight and mirror of one polish.
-struct Lobe {
+/// Highlight and mirror of one roughness.
+struct SpecularLobe {
     float specular = 0, shininess = 40;
     Color reflection = Color(0);
 };
 
 /// Images that vary highlight and mirror over an opaque mesh, in place of Material's specular,
-/// shininess and reflection: `color` takes the place of P in the tint M of both; `level`'s first
-/// channel, in [0, 1], chooses between `lobes`, which are spaced evenly over it and mixed linearly.
-struct Gloss {
-    ImageMap color = {};           ///< no texture: P stays
-    ImageMap level = {};           ///< no texture: lobes[0] alone; the texture is linear
-    std::vector<Lobe> lobes = {};  ///< 1 to 16
+/// shininess and reflection: `color` takes the place of P, or of specular_color, in the tint M of
+/// both; `level`'s first channel, in [0, 1], chooses between `lobes`, which are spaced evenly over
+/// it and mixed linearly.
+struct SpecularLobes {
+    ImageMap color = {};                   ///< no texture: P stays
+    ImageMap level = {};                   ///< no texture: lobes[0] alone; the texture is linear
+    std::vector<SpecularLobe> lobes = {};  ///< 1 to 16
 };
 
 /// A tangent-space normal map (glTF 2.0, section 3.9.3) over a mesh with tangents; `scale` is that
@@ -103,11 +107,28 @@ struct NormalMap {
     float scale = 1;
 };
 
+struct Material;
+
+/// A second look of a mesh: where the image's first channel is c in [0, 1], the surface is mixed
+/// linearly from its own look (c) and from the other (1 - c), each lit by itself. The texture is
+/// linear. What a ray has entered is that of the first: the other's ior and absorption are not used
+/// but for Fresnel's term.
+struct Blend {
+    ImageMap map = {};
+    std::vector<Material> other = {};  ///< one, without a Blend and an AlphaMap
+};
+
 /// Light along a path of length x inside of the surface is multiplied by color^(x / distance).
 struct Absorption {
     Color color = Color(1);  ///< in (0, 1]
     double distance = 1;
 };
+
+/// Which sides of its facets a surface shows. The front of a facet is where its corners run
+/// counter-clockwise, in the space of its mesh, so that an instance which mirrors turns nothing
+/// over. From behind such a facet is not there for rays that look; it casts its shadow from both
+/// sides.
+enum class Sides { both, front };
 
 /// A Phong surface. Every number is kept in float32, as POV-Ray keeps it.
 struct Material {
@@ -119,23 +140,33 @@ struct Material {
     float specular = 0.3F;        ///< K_S, highlight in the light's colour
     float shininess = 40;         ///< N, the Phong exponent of the mirrored eye ray, >= 0
     float metallic = 0;           ///< [0, 1]: tints highlight and reflection by P
+    /// The highlight's own colour, in place of P in M; a metal's reflection takes it too.
+    std::optional<Color> specular_color = {};
     Color reflection = Color(0);  ///< mirror coefficient per channel
     Color emission = Color(0);    ///< radiance, not multiplied by P
-    float opacity = 1;            ///< [0, 1]
-    float transmission = 0;       ///< [0, 1]: how much P tints what is seen through the surface
-    float ior = 1;                ///< index of refraction; 1 lets rays pass straight
-    bool fresnel = false;         ///< reflection is multiplied by Fresnel's term of `ior`
-    bool smooth = true;           ///< interpolate normals if the mesh has them
+    /// K_T per channel, not multiplied by P: light from behind that is scattered to the eye.
+    Color diffuse_transmission = Color(0);
+    float opacity = 1;       ///< [0, 1]
+    float transmission = 0;  ///< [0, 1]: how much P tints what is seen through the surface
+    float ior = 1;           ///< index of refraction; 1 lets rays pass straight
+    bool fresnel = false;    ///< reflection is multiplied by Fresnel's term of `ior`
+    bool smooth = true;      ///< interpolate normals if the mesh has them
     std::optional<Absorption> absorption = {};
     // Of meshes only:
+    Sides sides = Sides::both;
     std::optional<ImageMap> emission_map = {};  ///< times `emission`; the surface must be opaque
-    std::optional<Coverage> coverage = {};
-    std::optional<Gloss> gloss = {};  ///< the surface must be opaque
+    /// Times `diffuse_transmission`; the surface must be opaque.
+    std::optional<ImageMap> diffuse_transmission_map = {};
+    std::optional<AlphaMap> alpha_map = {};
+    std::optional<SpecularLobes> specular_lobes = {};  ///< the surface must be opaque
     std::optional<NormalMap> normal_map = {};
+    std::optional<Blend> blend = {};
 };
 
 /// Does no light pass through it?
-inline bool opaque(const Material& m) { return m.opacity >= 1 && !m.coverage; }
+inline bool opaque(const Material& m) {
+    return m.opacity >= 1 && !m.alpha_map && !(m.blend && !opaque(m.blend->other.front()));
+}
 
 /// Direction of u on the surface, unit, and the handedness (+1 or -1) of the bitangent, which is
 /// handedness * cross(normal, direction) (glTF 2.0, section 3.7.2.1).
@@ -151,7 +182,7 @@ struct Mesh {
     std::vector<Vec3f> normals = {};  ///< unit; empty: flat facets
     std::vector<Vec2f> texcoords = {};
     std::vector<Color> colors = {};                    ///< vertex colours, times Material::color
-    std::vector<float> alphas = {};                    ///< [0, 1], of Material::coverage
+    std::vector<float> alphas = {};                    ///< [0, 1], of Material::alpha_map
     std::vector<Tangent> tangents = {};                ///< needed by normal maps
     std::vector<std::array<Index, 3>> triangles = {};  ///< into positions
     Index material = no_index;                         ///< into Scene::materials
@@ -224,6 +255,7 @@ struct Camera {
     Side side = Side::horizontal;  ///< the side that `fov` or `extent` measures
     double fov = radians(40);      ///< perspective: full angle, in (0, pi)
     double extent = 4;             ///< orthographic: full length, scene units
+    double aspect = 0;  ///< width / height of the picture that its author had in mind; 0: any
 };
 
 /// An image of the whole sky in place of Scene::background: longitude runs to the right and
@@ -249,15 +281,6 @@ struct Scene {
     Color ambient = Color(1);  ///< Ia, the global lighting constant
 };
 
-/// How a scene is turned into a picture; the same for the tracer and for POV-Ray.
-struct RenderOptions {
-    int width = 800, height = 600;  ///< pixels
-    int samples = 1;      ///< 1: the pixel's centre; n > 1: n x n grid and the centre once more
-    int max_depth = 5;    ///< ray segments along a path, the primary one included
-    double exposure = 0;  ///< EV: light, ambience, emission and background are scaled by 2^EV
-    int threads = 0;      ///< 0: as many as the machine has
-};
-
 /// An axis-aligned box; empty while min > max.
 struct Bounds {
     Vec3 min = Vec3(1e300), max = Vec3(-1e300);
@@ -267,128 +290,15 @@ struct Bounds {
     double radius() const { return empty() ? 0 : (max - min).length() * 0.5; }
 };
 
-/// World-space bounds of all facets and spheres (not planes).
+/// World-space bounds of all facets and spheres (not planes). Precondition: the indices of
+/// instances and facets are in range.
 Bounds bounds(const Scene& scene);
 
-/// Number of facets after instancing.
+/// Number of facets after instancing. Precondition: the instances' meshes are in range.
 std::size_t facet_count(const Scene& scene);
 
 /// Every broken rule in `scene`, one sentence each; empty when it may be rendered: indices in
 /// range, numbers finite, per-vertex vectors of equal length, invertible transforms, sane cameras.
 [[nodiscard]] std::vector<std::string> defects(const Scene& scene);
-
-/// Gives a scene what a picture needs and its author left out: a material for everything without
-/// one, a camera framed on the bounds from front-right-above, and, when it has no light, a rig of
-/// three sources sized to the bounds. `aspect` is width / height.
-void complete(Scene& scene, double aspect);
-
-/// Gives `mesh` the tangents that a normal map at `map` needs: per vertex, in the direction in
-/// which u' of the map grows. The bitangent points to where v' grows, that is up in the image, as
-/// green does in glTF's normal maps, whose v runs down but whose y is up (glTF 2.0, section 3.9.3).
-/// Weighs facets by their angle at the vertex, as MikkTSpace does; vertices where facets of both
-/// handednesses meet are split. A mesh without normals gets those of its facets first, each facet
-/// then having vertices of its own. Does nothing to a mesh without texture coordinates.
-void compute_tangents(Mesh& mesh, const ImageMap& map);
-
-/// How far bake_normal_maps() goes.
-struct NormalMapBudget {
-    std::size_t facets = 500000;  ///< that all meshes with normal maps may have together
-    /// Radians. Facets whose interpolated normals are this near to the map's, in the quadratic mean
-    /// over the facet, are not divided further.
-    double tolerance = 0.01;
-};
-
-/// Turns normal maps into vertex normals, which POV-Ray knows: divides the facets of every mesh
-/// whose material has one, those with the largest error first, until the budget is reached. Facets
-/// are halved on both sides of an edge, so that no cracks open. Normals become the perturbed ones,
-/// normalize(scale x T + scale y B + z N), and the other vertex data are interpolated; tangents are
-/// not kept. Computes missing tangents and, for flat facets, normals. No material has a normal map
-/// afterwards. The losses say, for each material, what was reached.
-/// Precondition: defects(scene) finds nothing in meshes, materials and textures.
-Losses bake_normal_maps(Scene& scene, const NormalMapBudget& budget = {});
-
-/// Removes all normal maps; a loss for each material.
-Losses drop_normal_maps(Scene& scene);
-
-/// Of opaque facets that lie exactly on one another leaves the first: which of them a ray hits
-/// would be a matter of rounding. Meshes that several instances share stay whole. Returns how many
-/// went.
-std::size_t drop_coincident_facets(Scene& scene);
-
-// ---- what the tracer and the exporters share --------------------------------------------------
-
-/// A scene in the units that both renderers work in. POV-Ray's tolerances are absolute, so all
-/// lengths are multiplied by one power of two that brings the radius of the bounded geometry into
-/// [8, 16); a scene far from the origin (more than 64 radii) is moved there first.
-/// Meshes are rescaled by powers of two so that their instances have a scale near 1. Exposure
-/// is folded into lights, ambience, emission and background. Material::color is multiplied into
-/// the texture (16 bit linear) where POV-Ray cannot layer it: metallic, emissive and translucent
-/// surfaces.
-struct NormalisedScene {
-    Scene scene = {};
-    double factor = 1;        ///< user's length * factor = length here
-    Vec3 offset = {0, 0, 0};  ///< subtracted, in the user's units, before scaling
-};
-
-/// Precondition: defects(scene).empty().
-NormalisedScene normalise(Scene scene, const RenderOptions& options);
-
-/// A light as both renderers see it: one point without extent.
-struct Source {
-    Light::Type type = Light::Type::point;
-    Vec3 position = Vec3(0);      ///< directional: a point far up the light, outside the scene
-    Vec3 point_at = Vec3(0);      ///< spot and directional: a point along its axis
-    Color color = Color(0);       ///< Ip x colour / number of virtual sources
-    double inner = 0, outer = 0;  ///< spot half-angles, radians
-    std::optional<Attenuation> attenuation = {};
-};
-
-/// An Absorption as POV-Ray's fade_color of a fade_power beyond 1000 over fade_distance: light
-/// fades with exp(-(1 - fade_color) x / fade_distance). Both are float32 there.
-Color fade_color(const Absorption& absorption);
-/// (1 - fade_color) / fade_distance
-Vec3 fade_exponent(const Absorption& absorption);
-
-/// The virtual sources of `light`, in a fixed order.
-std::vector<Source> virtual_sources(const Light& light);
-
-/// Where `map` is looked up at the mesh's texture coordinates `uv`.
-inline Vec2 map_texcoord(const ImageMap& map, const Vec2& uv) {
-    const auto& t = map.transform;
-    return {t[0] * uv.x + t[1] * uv.y + t[2], t[3] * uv.x + t[4] * uv.y + t[5]};
-}
-
-/// A coverage that is at least this counts as the cutoff: equal numbers must not be told apart by
-/// their last bit.
-inline double cutoff_threshold(float cutoff) { return double(cutoff) - 1e-6; }
-
-/// Texture coordinates of a Sky in the unit direction `d`.
-Vec2 sky_texcoord(const Vec3& d);
-
-/// Texture coordinates of a sphere at the unit vector `p` from its centre: longitude and latitude,
-/// readable from outside; the left edge of the image is at +x and it runs towards -z.
-Vec2 sphere_texcoord(const Vec3& p);
-
-/// Texture coordinates of a plane: ((p - origin).u, (p - origin).v) / ImageMap::size. On a floor u
-/// is +x and v is -z; on a wall v is up.
-struct PlaneFrame {
-    Vec3 origin = Vec3(0), normal = Vec3(0), u = Vec3(0), v = Vec3(0);  ///< unit, perpendicular
-};
-PlaneFrame plane_frame(const Plane& plane);
-
-/// The camera's picture plane as POV-Ray's camera vectors: the ray through the point (u, v) of the
-/// picture, u right and v up in [-1/2, 1/2], starts at location with direction
-/// direction + u right + v up (perspective), or at location + u right + v up with direction
-/// `direction` (orthographic).
-struct View {
-    bool orthographic = false;
-    Vec3 location = Vec3(0), right = Vec3(0), up = Vec3(0), direction = Vec3(0);
-};
-View view_of(const Camera& camera, int width, int height);
-
-/// Phong terms that imitate a glTF metallic-roughness surface; `base` is its base colour and `f0`
-/// the dielectric reflectance at normal incidence (0.04 for ior 1.5). An approximation: a least
-/// squares fit of the Phong lobe to GGX. Sets diffuse, specular, shininess, metallic, reflection.
-void set_metallic_roughness(Material& material, float metallic, float roughness, float f0 = 0.04F);
 
 }  // namespace penumbra

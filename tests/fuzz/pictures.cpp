@@ -5,7 +5,8 @@
 // both files.
 #include "fuzz.h"
 
-#include "penumbra/validation.h"
+#include "penumbra/compare.h"
+#include "penumbra/report.h"
 
 #include <algorithm>
 #include <array>

@@ -32,6 +32,10 @@ noise = { colors = [[0.9, 0.2, 0.1], [0.1, 0.3, 0.9]], size = 0.01 }
 """
 
 
+# What was there, with the mark of an export: files of others are not replaced.
+OLD = "what was there, written by penumbra"
+
+
 def mount(folder):
     return LIBC.mount(b"tmpfs", os.fsencode(folder), b"tmpfs", 0, b"size=1m") == 0
 
@@ -88,7 +92,7 @@ class Disk(unittest.TestCase):
 
     def old(self, *files):
         for file in files:
-            (self.disk / file).write_text("what was there")
+            (self.disk / file).write_text(OLD)
 
     def test_render(self):
         for extension in ("png", "exr", "tif", "hdr", "jpg"):
@@ -101,9 +105,17 @@ class Disk(unittest.TestCase):
                            place=f"disk/out.{extension}")
 
     def test_render_with_checkpoints(self):
+        """A checkpoint that was worth its time stays, and that is said."""
         self.old("out.exr")
-        self.fails("render", "noise.toml", "-o", "disk/out.exr", "--checkpoint", "0.05", "--size",
-                   "1600x1200", place="disk/out.exr")
+        ended = self.penumbra("render", "noise.toml", "-o", "disk/out.exr", "--checkpoint", "0.05",
+                              "--size", "1600x1200")
+        self.assertEqual(ended.status, 4, ended.err)
+        self.assertEqual(len(ended.lines()), 1, ended.err)
+        self.assertRegex(ended.lines()[0], "^penumbra: error: disk/out.exr: .*[Nn]o space left")
+        found = content(self.disk)
+        kept = found.pop("out.exr.checkpoint", None) is not None
+        self.assertEqual(found, {"out.exr": OLD.encode()})
+        self.assertEqual(ended.lines()[0].endswith("--resume goes on from its checkpoint"), kept)
 
     def test_export(self):
         self.old("out.pov", "out.ini", "out_geometry.inc")
@@ -113,7 +125,7 @@ class Disk(unittest.TestCase):
         # The .pov, which needs the others, comes last; the .ini is small and may be new.
         self.assertEqual(found.keys(), {"out.pov", "out.ini", "out_geometry.inc"})
         for file in ("out.pov", "out_geometry.inc"):
-            self.assertEqual(found[file], b"what was there")
+            self.assertEqual(found[file], OLD.encode())
         self.assertIn(found["out.ini"][:5], (b"what ", b"; Run"))
 
     @unittest.skipUnless(POVRAY, "POV-Ray is not installed")
@@ -122,7 +134,7 @@ class Disk(unittest.TestCase):
         for scene in ("soup.obj", "noise.toml"):
             with self.subTest(scene):
                 (self.disk / "report").mkdir(exist_ok=True)
-                (self.disk / "report/index.html").write_text("what was there")
+                (self.disk / "report/index.html").write_text(OLD)
                 before = content(self.disk)
                 ended = self.penumbra("validate", scene, "--report", "disk/report")
                 self.assertEqual(ended.status, 4, ended.err)

@@ -196,12 +196,10 @@ class Injection(unittest.TestCase):
         def include():
             for which in ("evil", "good"):
                 folder = self.top / which
-                name = re.search(r"#declare (Model_(?!scale|offset)\w+)",
-                                 (folder / "scene.inc").read_text())[1]
                 (folder / "own.pov").write_text(
                     '#version 3.7; global_settings { assumed_gamma 1 }\n#include "scene.inc"\n'
                     "camera { location <0, 0, -40> look_at 0 } light_source { <0, 9, -40>, 1 }\n"
-                    f"object {{ {name} }}\n")
+                    "object { Model_scene }\n")
             self.povray("+Iown.pov", "+Opicture.png", "+FN")
 
         self.exported("include", "inc", include)

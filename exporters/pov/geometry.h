@@ -1,0 +1,13 @@
+// Meshes -> the include file that declares them.
+#pragma once
+
+#include "exporters/pov/plan.h"
+
+#include <string>
+
+namespace penumbra::pov {
+
+/// FILE_geometry.inc, or that part of an include file; empty when the scene has no meshes.
+std::string geometry_text(const Plan& plan);
+
+}  // namespace penumbra::pov

@@ -1,0 +1,39 @@
+// Colours, images and patterns -> what stands in pigment { }.
+#pragma once
+
+#include "exporters/pov/plan.h"
+
+#include <string>
+
+namespace penumbra::pov {
+
+/// The light that a pigment lets through: in its own colour, and as it is.
+struct Passing {
+    float filter = 0, transmit = 0;
+    bool none() const { return filter == 0 && transmit == 0; }
+};
+
+/// "rgb ...", "rgbt ..." or "rgbft ...".
+std::string color(const Color& c, const Passing& passing);
+
+/// The transforms that lay the image, or a pattern of it, where it belongs.
+std::string image_placement(const Plan& plan, const Look& look, const ImageMap& map);
+
+/// `png "file.png" gamma srgb interpolate 2`, as it stands in image_map and image_pattern.
+std::string image_file(const Plan& plan, const ImageMap& map);
+
+/// The image alone. What wears it counts as opaque when POV-Ray looks for shadows.
+std::string image_map(const Plan& plan, const Look& look, const ImageMap& map,
+                      const Passing& passing);
+
+/// The image, translucent for shadows too if it lets light through.
+std::string image_pigment(const Plan& plan, const Look& look, const ImageMap& map,
+                          const Passing& passing);
+
+/// The look's pattern or colour.
+std::string pigment(const Plan& plan, const Look& look, const Passing& passing);
+
+/// The pigment of Scene::sky.
+std::string sky_pigment(const Plan& plan);
+
+}  // namespace penumbra::pov

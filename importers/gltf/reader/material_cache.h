@@ -1,0 +1,64 @@
+// What of a glTF file's materials has been made so far.
+#pragma once
+
+#include "image/texels.h"
+#include "importers/shared/image_store.h"
+
+#include "penumbra/scene.h"
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace penumbra::gltf {
+
+/// The images of one surface that bake_specular_lobes() made, for all materials with the same ones.
+struct BakedLobes {
+    Index scattered = no_index;         ///< into Scene::textures; none: the base colour stays
+    SpecularLobes specular_lobes = {};  ///< without transforms
+};
+
+/// An image of a material that is laid by other texture coordinates than the first one.
+struct OtherSet {
+    int texcoord = 0;  ///< n of TEXCOORD_n
+    ImageMap& (*map)(Material&) = nullptr;
+};
+
+/// A map from texture coordinates to others, as ImageMap::transform.
+using Lookup = std::array<double, 6>;
+
+/// A material whose OtherSets are looked up by the first texture coordinates.
+struct Relaid {
+    Index original = no_index, material = no_index;
+    std::vector<Lookup> lookups = {};
+};
+
+/// Texture coordinates of a facet's corners, with v running up.
+using LaidFacet = std::array<Vec2f, 3>;
+
+/// What the materials have come to so far.
+struct MaterialCache {
+    std::map<int, Index> materials = {};   ///< by glTF index; -1: the default one
+    std::map<int, Index> untextured = {};  ///< the same without images
+    std::map<int, Index> one_set = {};     ///< the same with the images of the first TEXCOORD_n
+    std::map<Index, Index> fading = {};    ///< by material: the same with a coverage
+    std::map<int, std::vector<OtherSet>> other_sets = {};  ///< by glTF index
+    std::vector<Relaid> relaid = {};
+    std::map<int, int> texcoords = {};  ///< n of TEXCOORD_n by glTF index; absent: no images
+    std::map<std::string, Index> textures = {};  ///< by image, sampling and use
+    std::map<std::string, BakedLobes> baked_lobes = {};
+    ImageStore store = {};           ///< by number
+    std::map<int, int> images = {};  ///< by texture: the one that can be read; -1: none
+    std::map<std::string, TexelMask> shown = {};  ///< by material, texture and how it is laid
+    /// The facets that wear glTF material `material`, by TEXCOORD_`texcoord`; none where that
+    /// cannot be told.
+    std::function<std::optional<std::vector<LaidFacet>>(int material, int texcoord)> facets = {};
+    std::map<std::pair<int, bool>, Color> means = {};  ///< by texture, and whether it is sRGB
+};
+
+}  // namespace penumbra::gltf

@@ -1,0 +1,74 @@
+// The rules that the tracer and the exporters share: where virtual sources stand, where images are
+// looked up, and what the camera sees.
+#pragma once
+
+#include "penumbra/math.h"
+#include "penumbra/scene.h"
+
+#include <optional>
+#include <vector>
+
+namespace penumbra {
+
+/// A light as both renderers see it: one point without extent.
+struct Source {
+    Light::Type type = Light::Type::point;
+    Vec3 position = Vec3(0);      ///< directional: a point far up the light, outside the scene
+    Vec3 point_at = Vec3(0);      ///< spot and directional: a point along its axis
+    Color color = Color(0);       ///< Ip x colour / number of virtual sources
+    double inner = 0, outer = 0;  ///< spot half-angles, radians
+    std::optional<Attenuation> attenuation = {};
+};
+
+/// An Absorption as POV-Ray's fade_color of a fade_power beyond 1000 over fade_distance: light
+/// fades with exp(-(1 - fade_color) x / fade_distance). Both are float32 there.
+Color fade_color(const Absorption& absorption);
+/// (1 - fade_color) / fade_distance
+Vec3 fade_exponent(const Absorption& absorption);
+
+/// The virtual sources of `light`, in a fixed order. Precondition: defects() finds nothing in
+/// `light`.
+std::vector<Source> virtual_sources(const Light& light);
+
+/// Where `map` is looked up at the mesh's texture coordinates `uv`.
+inline Vec2 map_texcoord(const ImageMap& map, const Vec2& uv) {
+    const auto& t = map.transform;
+    return {t[0] * uv.x + t[1] * uv.y + t[2], t[3] * uv.x + t[4] * uv.y + t[5]};
+}
+
+/// A coverage that is at least this counts as the cutoff: equal numbers must not be told apart by
+/// their last bit.
+inline double cutoff_threshold(float cutoff) { return double(cutoff) - 1e-6; }
+
+/// Texture coordinates of a Sky in the unit direction `d`.
+Vec2 sky_texcoord(const Vec3& d);
+
+/// Texture coordinates of a sphere at the unit vector `p` from its centre: longitude and latitude,
+/// readable from outside; the left edge of the image is at +x and it runs towards -z.
+Vec2 sphere_texcoord(const Vec3& p);
+
+/// Texture coordinates of a plane: ((p - origin).u, (p - origin).v) / ImageMap::size. On a floor u
+/// is +x and v is -z; on a wall v is up.
+struct PlaneFrame {
+    Vec3 origin = Vec3(0), normal = Vec3(0), u = Vec3(0), v = Vec3(0);  ///< unit, perpendicular
+};
+/// Precondition: the plane's normal is not zero.
+PlaneFrame plane_frame(const Plane& plane);
+
+/// The camera's picture plane as POV-Ray's camera vectors: the ray through the point (u, v) of the
+/// picture, u right and v up in [-1/2, 1/2], starts at location with direction
+/// direction + u right + v up (perspective), or at location + u right + v up with direction
+/// `direction` (orthographic).
+struct View {
+    bool orthographic = false;
+    Vec3 location = Vec3(0), right = Vec3(0), up = Vec3(0), direction = Vec3(0);
+};
+/// Precondition: defects() finds nothing in `camera`, and width and height are at least 1.
+View view_of(const Camera& camera, int width, int height);
+
+/// Phong terms that imitate a glTF metallic-roughness surface; `base` is its base colour and `f0`
+/// the dielectric reflectance at normal incidence (0.04 for ior 1.5). An approximation: a least
+/// squares fit of the Phong lobe to GGX. Sets diffuse, specular, shininess, metallic, reflection.
+void set_metallic_roughness(Material& material, float metallic, float roughness, float f0 = 0.04F);
+
+}  // namespace penumbra

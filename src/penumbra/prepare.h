@@ -1,0 +1,103 @@
+// Scene -> Scene: what is done to a scene before it is rendered or exported.
+#pragma once
+
+#include "penumbra/error.h"
+#include "penumbra/math.h"
+#include "penumbra/render_options.h"
+#include "penumbra/scene.h"
+
+#include <cstddef>
+
+namespace penumbra {
+
+/// Gives a scene what a picture needs and its author left out: a material for everything without
+/// one, a camera framed on the bounds from front-right-above, and, when it has no light, a rig of
+/// three sources sized to the bounds. `aspect` is width / height. Precondition: that of bounds(),
+/// and aspect > 0.
+void complete(Scene& scene, double aspect);
+
+/// Gives `mesh` the tangents that a normal map at `map` needs: per vertex, in the direction in
+/// which u' of the map grows. The bitangent points to where v' grows, that is up in the image, as
+/// green does in glTF's normal maps, whose v runs down but whose y is up (glTF 2.0, section 3.9.3).
+/// Weighs facets by their angle at the vertex, as MikkTSpace does; vertices where facets of both
+/// handednesses meet are split. A mesh without normals gets those of its facets first, each facet
+/// then having vertices of its own. Does nothing to a mesh without texture coordinates.
+/// Precondition: the facets' indices are in range. Throws Error (input: not enough memory).
+void compute_tangents(Mesh& mesh, const ImageMap& map);
+
+/// How far bake_normal_maps() goes.
+struct NormalMapBudget {
+    std::size_t facets = 500000;  ///< that all meshes with normal maps may have together
+    /// Radians. Facets whose interpolated normals are this near to the map's, in the quadratic mean
+    /// over the facet, are not divided further.
+    double tolerance = 0.01;
+};
+
+/// Turns normal maps into vertex normals, which POV-Ray knows: divides the facets of every mesh
+/// whose material has one, those with the largest error first, until the budget is reached. Facets
+/// are halved on both sides of an edge, so that no cracks open. Normals become the perturbed ones,
+/// normalize(scale x T + scale y B + z N), and the other vertex data are interpolated; tangents are
+/// not kept. Computes missing tangents and, for flat facets, normals. No material has a normal map
+/// afterwards. The losses say, for each material, what was reached.
+/// Precondition: defects(scene) finds nothing in meshes and materials. Throws Error (input: too
+/// many facets, not enough memory).
+Losses bake_normal_maps(Scene& scene, const NormalMapBudget& budget = {});
+
+/// Removes all normal maps; a loss for each material.
+Losses drop_normal_maps(Scene& scene);
+
+/// Of opaque facets that lie exactly on one another leaves the first: which of them a ray hits
+/// would be a matter of rounding. Instances that share a mesh get one of their own where others
+/// want it whole. Returns how many facets went.
+std::size_t drop_coincident_facets(Scene& scene);
+
+/// Parts what lies in one plane and overlaps, with light passing through or in part: facets, the
+/// scene's planes, and spheres in one place. The later one lies on top, what is blended on all
+/// the rest; it is lifted off the other, on the side of its front, by more than POV-Ray's
+/// tolerances and less than a pixel. Facets hang together with all of their mesh that they share a
+/// plane with. Nothing is done where it cannot be seen: to facets that look alike, and where
+/// two bodies touch; nor, in scenes of more than 4 million facets, to meshes that are shown more
+/// than once. The losses say what was done.
+/// Precondition: the indices of instances, facets and materials are in range.
+Losses part_surfaces(Scene& scene);
+/// Moves one-sided facets that lie exactly on one another and are shown on opposite sides apart,
+/// each towards its own side, by a hundred-thousandth of the scene's radius: a ray that passed the
+/// one which is not there would start where the other is, too near to meet it. Returns how many it
+/// moved. Precondition: the indices of instances and facets are in range.
+std::size_t lift_back_to_back_facets(Scene& scene);
+
+/// A loss for each material whose Sides::front cannot be kept to on some of its meshes: POV-Ray
+/// tells the sides of smooth facets by their normals. Nothing is said of meshes that are closed and
+/// opaque, whose backs nobody sees from outside. Normal maps are to be settled before.
+/// Precondition: that of lift_back_to_back_facets().
+Losses shown_backs(const Scene& scene);
+
+/// What becomes of normal maps, which POV-Ray does not have.
+enum class NormalMaps {
+    bake,   ///< vertex normals: bake_normal_maps()
+    drop,   ///< left out: drop_normal_maps()
+    pixel,  ///< kept, for render(): an export leaves them out. Missing tangents are computed
+};
+
+/// Does so. Precondition and errors: those of bake_normal_maps().
+Losses settle_normal_maps(Scene& scene, NormalMaps choice);
+
+/// A scene in the units that both renderers work in. POV-Ray's tolerances are absolute, so all
+/// lengths are multiplied by one power of two that brings the radius of the bounded geometry into
+/// [8, 16); a scene far from the origin (more than 64 radii) is moved there first,
+/// and so is a mesh whose vertices lie as far from the mesh's own origin.
+/// Meshes are rescaled by powers of two so that their instances have a scale near 1. Exposure
+/// is folded into lights, ambience, emission and background. Material::color is multiplied into
+/// the texture (16 bit linear) where POV-Ray cannot layer it: metallic, emissive and translucent
+/// surfaces.
+struct NormalisedScene {
+    Scene scene = {};
+    double factor = 1;        ///< user's length * factor = length here
+    Vec3 offset = {0, 0, 0};  ///< subtracted, in the user's units, before scaling
+};
+
+/// Precondition: defects(scene).empty(). Throws Error (usage: see RenderOptions; input: not enough
+/// memory).
+NormalisedScene normalise(Scene scene, const RenderOptions& options);
+
+}  // namespace penumbra

@@ -1,0 +1,225 @@
+// What one-sided facets need before a scene can be shown: those that lie back to back, and a word
+// about the backs that cannot be hidden.
+#include "base/hash.h"
+#include "scene/sides.h"
+#include "scene/transforms.h"
+#include "scene/vertex_arrays.h"
+
+#include "penumbra/prepare.h"
+#include "penumbra/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <map>
+#include <set>
+#include <span>
+#include <tuple>
+
+namespace penumbra {
+
+namespace {
+
+// Equal numbers have equal bits, 0 and -0 too.
+std::uint64_t hash_of_point(const Vec3f& p) {
+    const std::array<float, 3> numbers = {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F};
+    return hash_of(std::as_bytes(std::span(numbers)));
+}
+
+// ---- back to back ------------------------------------------------------------------------------
+
+// A one-sided facet of an instance. A facet that lies on another has the same `corners`, which are
+// a sum over its corners in the world; `turn` is the same for those that are shown on one side.
+struct OneSided {
+    std::uint64_t corners = 0;
+    Index instance = 0, facet = 0;
+    bool turn = false;
+};
+
+std::array<Vec3f, 3> corners_of(const Scene& scene, const Instance& instance, Index facet,
+                                const Vec3& origin) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    std::array<Vec3f, 3> places;
+    for (std::size_t i = 0; i < 3; ++i)
+        places[i] =
+            Vec3f(Vec3(mesh.positions[mesh.triangles[facet][i]]) * instance.transform - origin);
+    return places;
+}
+
+bool before(const Vec3f& p, const Vec3f& q) {
+    return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+}
+
+// Sorts the corners. Returns whether an odd number of exchanges does that.
+bool sort(std::array<Vec3f, 3>& corners) {
+    bool odd = false;
+    for (const auto& [a, b] : {std::pair(0U, 1U), std::pair(1U, 2U), std::pair(0U, 1U)}) {
+        if (!before(corners[b], corners[a])) continue;
+        std::swap(corners[a], corners[b]);
+        odd = !odd;
+    }
+    return odd;
+}
+
+std::vector<OneSided> one_sided_facets(const Scene& scene, const Vec3& origin) {
+    std::vector<OneSided> found;
+    for (Index i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        if (scene.materials[mesh.material].sides == Sides::both) continue;
+        const bool mirrors = instance.transform.determinant() < 0;
+        for (Index k = 0; k < mesh.triangles.size(); ++k) {
+            auto corners = corners_of(scene, instance, k, origin);
+            const bool odd = sort(corners);
+            std::uint64_t sum = 0;
+            for (const Vec3f& p : corners) sum += hash_of_point(p);
+            found.push_back({sum, i, k, odd != mirrors});
+        }
+    }
+    std::ranges::sort(found, [](const OneSided& a, const OneSided& b) {
+        return std::tie(a.corners, a.instance, a.facet) < std::tie(b.corners, b.instance, b.facet);
+    });
+    return found;
+}
+
+// Moves facets along their normals, each with vertices of its own; `height` is in the world.
+void lift(Mesh& mesh, const Matrix& to_world, const std::set<Index>& facets, double height) {
+    std::vector<Index> chosen(mesh.positions.size());
+    for (Index i = 0; i < chosen.size(); ++i) chosen[i] = i;
+    for (const Index facet : facets)
+        for (Index& corner : mesh.triangles[facet]) {
+            chosen.push_back(corner);
+            corner = Index(chosen.size() - 1);
+        }
+    choose_vertices(mesh, chosen);
+    const Matrix normals = to_world.inverse().transposed();
+    for (const Index facet : facets) {
+        const auto& [a, b, c] = mesh.triangles[facet];
+        const Vec3 first(mesh.positions[a]);
+        const Vec3 up =
+            (Vec3(mesh.positions[b]) - first).cross(Vec3(mesh.positions[c]) - first).normalized();
+        // A way s up in the mesh leads s / |up'| away from the facet in the world, where up' is
+        // `up` as normals are transformed.
+        Vec3 in_world;
+        normals.multDirMatrix(up, in_world);
+        for (const Index corner : {a, b, c})
+            mesh.positions[corner] =
+                Vec3f(Vec3(mesh.positions[corner]) + up * (height * in_world.length()));
+    }
+}
+
+// ---- backs that show ---------------------------------------------------------------------------
+
+// Different for (a, b) and (b, a).
+std::uint64_t hash_of_edge(std::uint64_t a, std::uint64_t b) {
+    const std::uint64_t mixed = (a ^ std::rotl(b, 31)) * 0x9E3779B97F4A7C15U;
+    return mixed ^ (mixed >> 32U);
+}
+
+// Vertices by their places, to a millionth of the mesh: seams are closed but for rounding.
+std::vector<std::uint64_t> places_of(const Mesh& mesh) {
+    Bounds box;
+    for (const Vec3f& p : mesh.positions) box.extend(Vec3(p));
+    const double scale = box.radius() > 0 ? 1e6 / box.radius() : 0;
+    std::vector<std::uint64_t> places;
+    places.reserve(mesh.positions.size());
+    for (const Vec3f& p : mesh.positions) {
+        const Vec3 at = (Vec3(p) - box.min) * scale;
+        places.push_back(hash_of_point(
+            {float(std::round(at.x)), float(std::round(at.y)), float(std::round(at.z))}));
+    }
+    return places;
+}
+
+// Is the mesh the surface of a body, seen from outside? Every edge then runs as often one way as
+// the other, so that a sum over the hashes of both ways is 0, and the volume is positive (the sum
+// of the tetrahedra between one point and the facets).
+bool around_a_body(const Mesh& mesh) {
+    const std::vector<std::uint64_t> places = places_of(mesh);
+    std::uint64_t open = 0;
+    double volume = 0;
+    const Vec3 apex = mesh.positions.empty() ? Vec3(0) : Vec3(mesh.positions[0]);
+    for (const auto& [a, b, c] : mesh.triangles) {
+        for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
+            open += hash_of_edge(places[from], places[to]) - hash_of_edge(places[to], places[from]);
+        volume += (Vec3(mesh.positions[a]) - apex)
+                      .dot((Vec3(mesh.positions[b]) - apex).cross(Vec3(mesh.positions[c]) - apex));
+    }
+    return open == 0 && volume > 0;
+}
+
+std::string what_shows(const Backs& backs) {
+    const char* const why = "POV-Ray tells the sides of smooth facets by their normals";
+    if (!backs.hidden) return fmt::format("the backs of its facets are shown: {}", why);
+    if (backs.from > 0)
+        return fmt::format("its backs are shown where they are seen at less than {} degrees: {}",
+                           backs.lean, why);
+    return fmt::format("its fronts are left out where they are seen at less than {} degrees: {}",
+                       backs.lean, why);
+}
+
+}  // namespace
+
+std::size_t lift_back_to_back_facets(Scene& scene) {
+    const Bounds box = bounds(scene);
+    const Vec3 origin = local_origin(box);
+    const std::vector<OneSided> facets = one_sided_facets(scene, origin);
+    std::map<Index, std::pair<Index, std::set<Index>>> lifted;  // by mesh: an instance, facets
+    const auto same_place = [&](const OneSided& a, const OneSided& b) {
+        auto p = corners_of(scene, scene.instances[a.instance], a.facet, origin);
+        auto q = corners_of(scene, scene.instances[b.instance], b.facet, origin);
+        sort(p);
+        sort(q);
+        return p == q;
+    };
+    for (std::size_t i = 1, first = 0; i < facets.size(); ++i) {
+        if (facets[i].corners != facets[first].corners) first = i;
+        if (first == i || facets[i].turn == facets[first].turn ||
+            !same_place(facets[first], facets[i]))
+            continue;
+        for (const OneSided& one : {facets[first], facets[i]}) {
+            auto& [instance, of_mesh] = lifted[scene.instances[one.instance].mesh];
+            instance = one.instance;
+            of_mesh.insert(one.facet);
+        }
+    }
+    // Normalised, the scene's radius is 8 to 16, and this 1e-4 to 2e-4: twice that lies between
+    // both, more than POV-Ray's least distance, and far more than float32's rounding.
+    const double height = box.radius() * 1.25e-5;
+    std::size_t count = 0;
+    for (const auto& [mesh, of_mesh] : lifted) {
+        lift(scene.meshes[mesh], scene.instances[of_mesh.first].transform, of_mesh.second, height);
+        count += of_mesh.second.size();
+    }
+    return count;
+}
+
+Losses shown_backs(const Scene& scene) {
+    std::map<Index, Backs> worst;  // by material
+    const std::vector<Backs> all = backs(scene);
+    std::map<Index, bool> bodies;  // by mesh
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (all[i].lean == 0) continue;
+        const Index index = scene.instances[i].mesh;
+        const Mesh& mesh = scene.meshes[index];
+        const auto [body, unknown] = bodies.try_emplace(index, false);
+        if (unknown) body->second = opaque(scene.materials[mesh.material]) && around_a_body(mesh);
+        // The fronts of a body are to be seen as well.
+        if (body->second && (!all[i].hidden || all[i].from > 0)) continue;
+        const auto [entry, added] = worst.try_emplace(mesh.material, all[i]);
+        if (added) continue;
+        Backs& found = entry->second;
+        found = {.hidden = found.hidden && all[i].hidden,
+                 .from = std::max(found.from, all[i].from),
+                 .lean = std::max(found.lean, all[i].lean)};
+    }
+    Losses losses;
+    for (const auto& [material, found] : worst)
+        losses.push_back({Loss::approximated, scene.materials[material].name, what_shows(found)});
+    return losses;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,157 @@
+#include "prepare/small_objects.h"
+
+#include "prepare/scale.h"
+#include "scene/tolerances.h"
+#include "scene/transforms.h"
+
+#include "penumbra/light_model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace penumbra {
+namespace {
+
+// An instance or a sphere.
+struct Object {
+    std::string name;
+    Vec3 center;
+    double radius;     // of a sphere around it
+    double length;     // of its longest side, in its own axes
+    double thickness;  // of its shortest one
+};
+
+Bounds corners_of(const Mesh& mesh) {
+    Bounds box;
+    for (const auto& triangle : mesh.triangles)
+        for (const Index corner : triangle) box.extend(Vec3(mesh.positions[corner]));
+    return box;
+}
+
+Object object_of(const Instance& instance, const Mesh& mesh, const Bounds& box) {
+    const auto& m = instance.transform;
+    Vec3 sides = box.max - box.min;
+    for (int axis = 0; axis < 3; ++axis)
+        sides[axis] *= Vec3(m[axis][0], m[axis][1], m[axis][2]).length();
+    const auto [shortest, longest] = std::minmax({sides.x, sides.y, sides.z});
+    return {.name = instance.name.empty() ? mesh.name : instance.name,
+            .center = box.center() * m,
+            .radius = transformed(box, m).radius(),
+            .length = longest,
+            .thickness = shortest};
+}
+
+std::vector<Object> objects_of(const Scene& scene) {
+    std::vector<std::optional<Bounds>> boxes(scene.meshes.size());
+    std::vector<Object> objects;
+    for (const Instance& instance : scene.instances) {
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        auto& box = boxes[instance.mesh];
+        if (!box) box = corners_of(mesh);
+        // A point has nothing to lose.
+        if (box->radius() > 0) objects.push_back(object_of(instance, mesh, *box));
+    }
+    for (const Sphere& sphere : scene.spheres) {
+        const double diameter = 2 * sphere.radius;
+        objects.push_back({sphere.name, sphere.center, sphere.radius, diameter, diameter});
+    }
+    return objects;
+}
+
+// An object without a name is told by where it is.
+std::string description(const Object& object) {
+    if (!object.name.empty()) return "'" + object.name + "'";
+    const Vec3& c = object.center;
+    return fmt::format("the object at ({:.6g}, {:.6g}, {:.6g})", c.x, c.y, c.z);
+}
+
+// ---- tolerances --------------------------------------------------------------------------------
+
+// A flat sheet has no thickness that could be lost; float32 may leave it a little.
+bool has_thickness(const Object& object) { return object.thickness > 1e-5 * object.length; }
+
+void note_eaten(const std::vector<Object>& objects, const Bounds& box, Losses& losses) {
+    const double least = shadow_margin / normalising_factor(box);
+    const Object* smallest = nullptr;
+    std::size_t count = 0;
+    for (const Object& object : objects) {
+        if (!has_thickness(object) || object.thickness >= least) continue;
+        ++count;
+        if (smallest == nullptr || object.thickness < smallest->thickness) smallest = &object;
+    }
+    if (smallest == nullptr) return;
+    losses.push_back(
+        {Loss::approximated, "tolerances",
+         fmt::format("{} of {} objects {} thinner than {:.2g}, below which POV-Ray's tolerance "
+                     "leaves out shadows in a scene that measures {:.3g} across; the thinnest is "
+                     "{}, of {:.2g}",
+                     count, objects.size(), count == 1 ? "is" : "are", least, 2 * box.radius(),
+                     description(*smallest), smallest->thickness),
+         count});
+}
+
+// ---- pixels ------------------------------------------------------------------------------------
+
+// How many pixels an object spans; infinity where the camera is in reach of it.
+double pixels_across(const Object& object, const View& view, int height) {
+    const double picture = view.up.length();  // in the plane at distance 1
+    if (view.orthographic) return 2 * object.radius / picture * height;
+    const double distance = (object.center - view.location).length();
+    if (distance <= object.radius) return std::numeric_limits<double>::infinity();
+    return 2 * object.radius / (distance * picture) * height;
+}
+
+// The one that is farthest from the middle of most of them.
+const Object& outlier(const std::vector<Object>& objects) {
+    Vec3 middle;
+    std::vector<double> along(objects.size());
+    for (int axis = 0; axis < 3; ++axis) {
+        std::ranges::transform(objects, along.begin(),
+                               [&](const Object& o) { return o.center[axis]; });
+        const auto half = along.begin() + std::ptrdiff_t(along.size() / 2);
+        std::ranges::nth_element(along, half);
+        middle[axis] = *half;
+    }
+    return *std::ranges::max_element(objects, {},
+                                     [&](const Object& o) { return (o.center - middle).length(); });
+}
+
+void note_invisible(const Scene& scene, const std::vector<Object>& objects, const Bounds& box,
+                    int width, int height, Losses& losses) {
+    if (objects.empty()) return;
+    const View view = view_of(scene.cameras[scene.camera], width, height);
+    const auto seen = [&](const Object& o) { return pixels_across(o, view, height) >= 1; };
+    if (std::ranges::any_of(objects, seen)) return;
+    if (objects.size() == 1) {
+        losses.push_back({Loss::dropped, "camera",
+                          fmt::format("it is so far away that {} is smaller than a pixel",
+                                      description(objects[0]))});
+        return;
+    }
+    const Object& far = outlier(objects);
+    losses.push_back(
+        {Loss::dropped, "camera",
+         fmt::format("it shows {} objects within {:.3g}, so that each is smaller than a pixel; "
+                     "the farthest from the others is {} at ({:.6g}, {:.6g}, {:.6g})",
+                     objects.size(), 2 * box.radius(), description(far), far.center.x, far.center.y,
+                     far.center.z),
+         objects.size()});
+}
+
+}  // namespace
+
+Losses losses_by_size(const Scene& scene, const Bounds& box, int width, int height) {
+    Losses losses;
+    const std::vector<Object> objects = objects_of(scene);
+    note_eaten(objects, box, losses);
+    note_invisible(scene, objects, box, width, height, losses);
+    return losses;
+}
+
+}  // namespace penumbra

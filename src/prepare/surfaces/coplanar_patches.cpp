@@ -1,0 +1,296 @@
+#include "prepare/surfaces/coplanar_patches.h"
+
+#include "base/hash.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "prepare/surfaces/facet_overlaps.h"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+#include <tuple>
+#include <unordered_set>
+
+namespace penumbra {
+
+namespace {
+
+// ---- planes -------------------------------------------------------------------------------------
+
+// Planes are sorted into cells of the space of their normals and distances. What may lie in one
+// plane with something beyond the border of its cell belongs to both cells. A scene reaches up to
+// 16 units from its middle; normals of facets that are much larger than in_one_plane are as exact.
+constexpr double normal_cell = 2e-3, normal_margin = 2e-5;
+constexpr double distance_cell = 0.02, distance_margin = in_one_plane + 16 * normal_margin;
+
+// A border through 0 would cut the planes that are most frequent.
+constexpr double border = 0.37;
+
+// Calls visit(hash) for the cells of a plane. A normal and its opposite are the same.
+template <class Visit>
+void each_cell(Vec3 normal, double distance, Visit visit) {
+    const Vec3 nearly_never_perpendicular(0.8273, 0.4719, 0.3047);
+    if (normal.dot(nearly_never_perpendicular) < 0) {
+        normal = -normal;
+        distance = -distance;
+    }
+    std::array<std::int64_t, 4> first{}, last{};
+    unsigned twice = 0;  // bits: along which axes there are two cells
+    for (unsigned i = 0; i < 4; ++i) {
+        const bool is_distance = i == 3;
+        // What a hostile scene has is not near to anything.
+        const double at = is_distance ? std::clamp(distance, -1e6, 1e6) : normal[int(i)];
+        const double cell = is_distance ? distance_cell : normal_cell;
+        const double margin = is_distance ? distance_margin : normal_margin;
+        first[i] = std::int64_t(std::floor((at - margin) / cell + border));
+        last[i] = std::int64_t(std::floor((at + margin) / cell + border));
+        if (first[i] != last[i]) twice |= 1U << i;
+    }
+    for (unsigned some = twice;; some = (some - 1) & twice) {
+        std::array<std::int64_t, 4> cell = first;
+        for (unsigned i = 0; i < 4; ++i)
+            if ((some >> i & 1U) != 0) cell[i] = last[i];
+        visit(hash_of(std::as_bytes(std::span(cell))));
+        if (some == 0) return;
+    }
+}
+
+struct InCell {
+    std::uint64_t cell = 0;
+    Index facet = 0;
+    auto operator<=>(const InCell&) const = default;
+};
+
+using Run = std::span<const InCell>;  // of one cell
+
+std::vector<InCell> facets_by_cell(const WorldFacets& facets) {
+    constexpr std::size_t block = std::size_t(1) << 15;
+    std::vector<std::vector<InCell>> parts((facets.count() + block - 1) / block);
+    for_each_block(facets.count(), [&](std::size_t first, std::size_t last) {
+        std::vector<InCell>& part = parts[first / block];
+        part.reserve(last - first);
+        Index instance = facets.instance_of(Index(first));
+        for (auto number = Index(first); number < last; ++number) {
+            while (number >= facets.first_of(instance + 1)) ++instance;
+            const auto facet = facets.at(instance, number - facets.first_of(instance));
+            if (!facet) continue;
+            each_cell(facet->normal, facet->normal.dot(facet->corners[0]),
+                      [&](std::uint64_t cell) { part.push_back({cell, number}); });
+        }
+    });
+    std::vector<InCell> all;
+    std::size_t count = 0;
+    for (const auto& part : parts) count += part.size();
+    all.reserve(count);
+    for (auto& part : parts) {
+        all.insert(all.end(), part.begin(), part.end());
+        std::vector<InCell>().swap(part);
+    }
+    tbb::parallel_sort(all.begin(), all.end());
+    return all;
+}
+
+// Calls visit(Run) for all cells with more than one facet.
+template <class Visit>
+void each_run(std::span<const InCell> all, Visit visit) {
+    for (std::size_t first = 0, last = 0; first < all.size(); first = last) {
+        while (last < all.size() && all[last].cell == all[first].cell) ++last;
+        if (last - first > 1) visit(all.subspan(first, last - first));
+    }
+}
+
+// ---- patches ------------------------------------------------------------------------------------
+
+// Sets of facets that are joined, each called by its first one.
+class Sets {
+  public:
+    explicit Sets(std::size_t count) : parent_(count) {
+        std::iota(parent_.begin(), parent_.end(), Index(0));
+    }
+    Index of(Index i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+        return i;
+    }
+    void join(Index a, Index b) {
+        a = of(a);
+        b = of(b);
+        parent_[std::max(a, b)] = std::min(a, b);
+    }
+
+  private:
+    std::vector<Index> parent_;
+};
+
+struct AtVertex {
+    Index instance = 0, vertex = 0, facet = 0;
+    auto operator<=>(const AtVertex&) const = default;
+};
+
+// Joins the facets of a cell that share vertices.
+void join_neighbours(const WorldFacets& facets, Run run, std::vector<AtVertex>& scratch,
+                     Sets& sets) {
+    scratch.clear();
+    Index instance = facets.instance_of(run[0].facet);
+    for (const InCell& in : run) {
+        while (in.facet >= facets.first_of(instance + 1)) ++instance;
+        const auto& triangle =
+            facets.mesh_of(instance).triangles[in.facet - facets.first_of(instance)];
+        for (const Index vertex : triangle) scratch.push_back({instance, vertex, in.facet});
+    }
+    std::sort(scratch.begin(), scratch.end());
+    for (std::size_t i = 1; i < scratch.size(); ++i)
+        if (scratch[i].vertex == scratch[i - 1].vertex &&
+            scratch[i].instance == scratch[i - 1].instance)
+            sets.join(scratch[i].facet, scratch[i - 1].facet);
+}
+
+// ---- overlaps -----------------------------------------------------------------------------------
+
+// One of two that lie in one plane.
+struct Side {
+    Index instance = no_index;  // none: a plane of the scene
+    Index material = 0;
+    bool plain = false;  // looks like any other of its material
+    bool opaque = true;
+    bool solid = true;  // only its front is seen
+};
+
+// Does it make a difference which of the two is seen?
+bool must_be_parted(const Side& a, const Side& b, bool facing) {
+    if (a.material == b.material && a.plain && b.plain) return false;
+    // Where two bodies touch nobody looks, and the two sides of a sheet may be two facets.
+    const bool bodies = a.opaque && b.opaque && a.solid && b.solid;
+    const bool sheet = a.instance == b.instance && a.material == b.material;
+    return facing || !(bodies || sheet);
+}
+
+Side side_of(const WorldFacets& facets, Index number) {
+    const Index instance = facets.instance_of(number);
+    const Index facet = number - facets.first_of(instance);
+    return {.instance = instance,
+            .material = facets.mesh_of(instance).material,
+            .plain = facets.plain(instance, facet),
+            .opaque = opaque(facets.material_of(instance)),
+            .solid = facets.solid(instance, facet)};
+}
+
+class Overlaps {
+  public:
+    Overlaps(const WorldFacets& facets, Sets& patches) : facets_(facets), patches_(patches) {}
+
+    // Finds what overlaps among the facets of a cell.
+    void add(Run run) {
+        const Index first = patches_.of(run[0].facet);
+        if (std::ranges::all_of(run, [&](auto& in) { return patches_.of(in.facet) == first; }))
+            return;
+        placed_.clear();
+        boxes_.clear();
+        for (const InCell& in : run) {
+            const Index instance = facets_.instance_of(in.facet);
+            placed_.push_back(*facets_.at(instance, in.facet - facets_.first_of(instance)));
+            Bounds box;
+            for (const Vec3& p : placed_.back().corners) {
+                box.extend(p - Vec3(in_one_plane));
+                box.extend(p + Vec3(in_one_plane));
+            }
+            boxes_.push_back({box, Index(boxes_.size()), patches_.of(in.facet)});
+        }
+        each_touching_pair(boxes_, [&](Index i, Index j) {
+            add_pair(run[i].facet, run[j].facet, placed_[i], placed_[j]);
+        });
+    }
+
+    // Finds the facets of a cell that lie in a plane of the scene.
+    void add(const Plane& plane, const WorldFacet& in_it, Run run) {
+        const Material& material = facets_.scene().materials[plane.material];
+        const Side under = {.material = plane.material, .plain = true, .opaque = opaque(material)};
+        for (const InCell& in : run) {
+            const Side side = side_of(facets_, in.facet);
+            const auto facet =
+                facets_.at(side.instance, in.facet - facets_.first_of(side.instance));
+            const bool there = std::ranges::all_of(facet->corners, [&](const Vec3& p) {
+                return std::abs(in_it.height(p)) <= in_one_plane;
+            });
+            const bool facing = facet->normal.dot(in_it.normal) > 0;
+            if (!there || !must_be_parted(under, side, facing)) continue;
+            found_.push_back({no_index, patches_.of(in.facet), facing, !facing});
+        }
+    }
+
+    // In an order that does not depend on the hashes of cells.
+    std::vector<OverlappingPatches> found() {
+        std::sort(found_.begin(), found_.end());
+        found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+        return found_;
+    }
+
+  private:
+    void add_pair(Index a, Index b, const WorldFacet& at_a, const WorldFacet& at_b) {
+        if (lies_on_patch(a, b)) return add_pair(b, a, at_b, at_a);
+        const Index lower = patches_.of(a), upper = patches_.of(b);
+        const std::uint64_t both = std::uint64_t(lower) << 32 | upper;
+        if (known_.contains(both) || !overlap(at_a, at_b)) return;
+        const bool facing = at_a.normal.dot(at_b.normal) > 0;
+        const Side below = side_of(facets_, a);
+        if (!must_be_parted(below, side_of(facets_, b), facing)) return;
+        known_.insert(both);
+        found_.push_back({lower, upper, facing, !facing && below.solid});
+    }
+
+    bool lies_on_patch(Index facet, Index other) {
+        const Index a = facets_.instance_of(facet), b = facets_.instance_of(other);
+        return a == b ? patches_.of(facet) > patches_.of(other) : lies_on(facets_, a, b);
+    }
+
+    const WorldFacets& facets_;
+    Sets& patches_;
+    std::unordered_set<std::uint64_t> known_;  // lower and upper patch of what was found
+    std::vector<OverlappingPatches> found_;
+    std::vector<WorldFacet> placed_;  // scratch
+    std::vector<GroupedBox> boxes_;
+};
+
+// What belongs to a plane of the scene as it does to a facet.
+WorldFacet facet_in(const Plane& plane, const WorldFacets& facets) {
+    return {.corners = {facets.place(plane.point)}, .normal = plane.normal.normalized()};
+}
+
+}  // namespace
+
+bool lies_on(const WorldFacets& facets, Index instance, Index other) {
+    const auto rank = [&](Index i) {
+        const Material& m = facets.material_of(i);
+        const bool blended = !opaque(m) && !(m.alpha_map && m.alpha_map->cutoff);
+        return std::pair(blended, i);
+    };
+    return rank(instance) > rank(other);
+}
+
+CoplanarPatches coplanar_patches(const WorldFacets& facets) {
+    CoplanarPatches result;
+    const MemoryClaim claim(times(facets.count(), 2 * sizeof(InCell) + 3 * sizeof(AtVertex)),
+                            "facets in one plane");
+    const std::vector<InCell> all = facets_by_cell(facets);
+    Sets patches(facets.count());
+    std::vector<AtVertex> scratch;
+    each_run(all, [&](Run run) { join_neighbours(facets, run, scratch, patches); });
+    Overlaps overlaps(facets, patches);
+    each_run(all, [&](Run run) { overlaps.add(run); });
+    for (const Plane& plane : facets.scene().planes) {
+        const WorldFacet in_it = facet_in(plane, facets);
+        each_cell(in_it.normal, in_it.normal.dot(in_it.corners[0]), [&](std::uint64_t cell) {
+            const auto run = std::ranges::equal_range(all, cell, {}, &InCell::cell);
+            overlaps.add(plane, in_it, run);
+        });
+    }
+    result.overlaps = overlaps.found();
+    if (result.overlaps.empty()) return result;
+    result.patch.resize(facets.count());
+    for (Index i = 0; i < facets.count(); ++i) result.patch[i] = patches.of(i);
+    return result;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,22 @@
+#include "scene/check_options.h"
+
+#include "penumbra/error.h"
+
+#include <fmt/format.h>
+
+namespace penumbra {
+
+void check(const RenderOptions& options) {
+    const auto require = [](bool rule, const std::string& problem) {
+        if (!rule) throw Error(Failure::usage, "", problem);
+    };
+    require(options.width >= 1 && options.height >= 1,
+            fmt::format("a picture must have at least 1 x 1 pixels, not {} x {}", options.width,
+                        options.height));
+    require(options.samples >= 1,
+            fmt::format("a picture must have at least 1 sample a pixel, not {}", options.samples));
+    require(options.max_depth >= 1,
+            fmt::format("a path must have at least 1 ray segment, not {}", options.max_depth));
+}
+
+}  // namespace penumbra

@@ -1,0 +1,182 @@
+// Metallic-roughness -> Phong.
+#include "scene/metallic_roughness.h"
+
+#include "penumbra/light_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace penumbra {
+
+// The target is the model of glTF 2.0, appendix B: a GGX highlight of width a = roughness^2 whose
+// strength at normal incidence is F = lerp(f0, base colour, metallic), over a Lambert base
+// (1 - metallic) (1 - f0). It is split over the terms that a Phong surface has:
+//
+// highlight   GGX at its centre is F / (4 pi a^2) per unit irradiance (Walter et al. 2007,
+//             "Microfacet models for refraction through rough surfaces", for N = V = L); our terms
+//             have no 1/pi, so K_S = F / (4 a^2), at most 1. The exponent of the cosine lobe about
+//             the mirrored ray that fits D best by least squares over the solid angle is
+//             n = 0.676 / a^2 - 1.17.
+// mirror      what is sharp enough to be seen as a reflection: F s, s = (1 - roughness / 0.6)^2.
+// diffuse     a rough metal under a few point sources would be nearly black, as most of its light
+//             comes from the surroundings. So of what is reflected but not sharply, 1 - s, the part
+//             that the lobe does not carry is scattered evenly. The lobe's albedo is
+//             1/pi * integral of K_S cos^n = 2 K_S / (n + 1); with roughness 1 all sums to F.
+//
+// Highlight and mirror are tinted by Material::metallic: at normal incidence a coefficient k gives
+// k (1 - metallic + metallic P). To give F the coefficient must be F over that.
+
+//
+// What is not metal may reflect in a colour too (KHR_materials_specular, specular-glossiness). Then
+// highlight and mirror are tinted by Material::specular_color T with metallic = 1. For one
+// reflectance w of a white surface, f0 = w T, the lobe of strength w tinted by T is continuous with
+// that of a white one. A metal is w = 1 and T = its base colour, and the rest of its law, the light
+// that is scattered beside the lobe, is no dielectric's: that of w = 0.04 would brighten black
+// plastic. Nothing that is clear has an index above 3, w = 0.25, and no metal reflects less than
+// half in its strongest channel; between these a surface turns from one law to the other. So the
+// same gold as a metal, by an index of 0 (infinite) and by specular-glossiness is the same surface.
+
+// A mirror image fainter than this is left out: nobody sees it, but it would cost a ray.
+constexpr double faintest = 0.004;
+
+RoughnessLobe lobe_of_roughness(double roughness) {
+    const double r = std::clamp(roughness, 0.0, 1.0);
+    const double a = std::pow(std::max(r, 0.045), 2);
+    return {.highlight = 1 / (4 * a * a),
+            .exponent = std::clamp(0.676 / (a * a) - 1.17, 1.0, 10000.0),
+            .sharp = std::pow(std::max(0.0, 1 - r / 0.6), 2)};
+}
+
+double scattered(const RoughnessLobe& shape, double metallic, double f0, double highlight) {
+    const double lobe = 2 * highlight / (shape.exponent + 1), blurred = 1 - shape.sharp;
+    return (1 - metallic) * (1 - f0) + blurred * std::max(0.0, metallic * blurred - lobe);
+}
+
+SpecularLobe full_lobe(double roughness, double limit, double strongest) {
+    const RoughnessLobe shape = lobe_of_roughness(roughness);
+    const bool mirrors = strongest * shape.sharp >= faintest;
+    return {.specular = float(std::min(shape.highlight, limit)),
+            .shininess = float(shape.exponent),
+            .reflection = Color(mirrors ? float(shape.sharp) : 0.0F)};
+}
+
+void add_coat(SpecularLobe& lobe, double f0, double roughness) {
+    const RoughnessLobe shape = lobe_of_roughness(roughness);
+    if (f0 * shape.sharp >= faintest) lobe.reflection += Color(float(f0 * shape.sharp));
+    const float highlight = float(std::min(f0 * shape.highlight, 1.0));
+    if (highlight <= lobe.specular) return;
+    lobe.specular = highlight;
+    lobe.shininess = float(shape.exponent);
+}
+
+namespace {
+
+constexpr double clearest_metal = 0.25, dullest_metal = 0.5;
+
+bool is_grey(const Color& c) { return c.x == c.y && c.y == c.z; }
+
+double largest(const Color& c) { return double(std::max({c.x, c.y, c.z})); }
+
+// What the lobe of a metal leaves to be scattered, in its tint.
+double beside_lobe(const RoughnessLobe& shape, double highlight) {
+    const double blurred = 1 - shape.sharp;
+    return blurred * std::max(0.0, blurred - 2 * highlight / (shape.exponent + 1));
+}
+
+}  // namespace
+
+bool DielectricReflectance::plain() const { return is_grey(f0) && metal == 0; }
+
+double DielectricReflectance::strength() const {
+    return double(white) + double(metal) * (1 - double(white));
+}
+
+Color DielectricReflectance::tint() const {
+    return white > 0 ? f0 * float(1 / strength()) : Color(1);
+}
+
+DielectricReflectance dielectric_reflectance(const Color& f0, std::optional<float> white) {
+    const double w = white ? double(*white) : largest(f0);
+    const double metal = (w - clearest_metal) / (dullest_metal - clearest_metal);
+    return {f0, float(w), float(std::clamp(metal, 0.0, 1.0))};
+}
+
+Color scattered_color(const RoughnessLobe& shape, const Color& base, double metallic,
+                      const DielectricReflectance& dielectric, double highlight) {
+    const double f0 = std::clamp(largest(dielectric.f0), 0.0, 1.0);
+    const Color own = base * float(scattered(shape, metallic, f0, highlight));
+    if (dielectric.metal == 0) return own;
+    const double metal = (1 - metallic) * double(dielectric.metal);
+    return own + dielectric.tint() * float(metal * beside_lobe(shape, highlight));
+}
+
+namespace {
+
+// The colour is split into P and K_D so that a black base leaves a metal's P, and with it what
+// ambient light shows.
+void set_scattered(Material& material, const RoughnessLobe& shape, double metallic,
+                   const DielectricReflectance& dielectric, double highlight) {
+    const double f0 = std::clamp(largest(dielectric.f0), 0.0, 1.0),
+                 share = double(dielectric.metal);
+    const double own = scattered(shape, metallic, f0, highlight);
+    material.diffuse = float(own);
+    if (share == 0) return;
+    const Color base = material.color;
+    const double whole = own * (1 - share + share * largest(base)) +
+                         (1 - metallic) * share * beside_lobe(shape, highlight);
+    const Color sum = scattered_color(shape, base, metallic, dielectric, highlight);
+    material.diffuse = float(whole);
+    material.color = whole > 1e-6
+                         ? sum * float(1 / whole)
+                         : base + (dielectric.tint() - base) * float(share * (1 - metallic));
+}
+
+}  // namespace
+
+void set_metallic_roughness(Material& material, float metallic, float roughness,
+                            const DielectricReflectance& dielectric) {
+    const double m = std::clamp(double(metallic), 0.0, 1.0);
+    if (dielectric.plain() || m == 1)
+        return set_metallic_roughness(material, metallic, roughness, float(largest(dielectric.f0)));
+    const RoughnessLobe shape = lobe_of_roughness(double(roughness));
+    const double strength = dielectric.strength() + m * (1 - dielectric.strength());
+    const Color reflected = dielectric.f0 + (material.color - dielectric.f0) * float(m);
+    const double highlight = std::min(strength * shape.highlight, 1.0);
+    material.specular_color = reflected * float(1 / strength);
+    material.metallic = 1;
+    material.specular = float(highlight);
+    material.shininess = float(shape.exponent);
+    for (int c = 0; c < 3; ++c)
+        material.reflection[c] =
+            double(reflected[c]) * shape.sharp < faintest ? 0.0F : float(strength * shape.sharp);
+    set_scattered(material, shape, m, dielectric, highlight);
+}
+
+void set_metallic_roughness(Material& material, float metallic, float roughness, float f0) {
+    const double m = std::clamp(double(metallic), 0.0, 1.0);
+    const double dielectric = std::clamp(double(f0), 0.0, 1.0);
+    const RoughnessLobe shape = lobe_of_roughness(double(roughness));
+
+    // F over the tint, for one channel of the base colour.
+    const auto untinted = [&](double base) {
+        const double fresnel = dielectric + m * (base - dielectric);
+        const double tint = 1 - m + m * base;
+        return tint > 1e-6 ? std::min(fresnel / tint, 1.0) : 1.0;
+    };
+    const Color& base = material.color;
+    const double strongest = untinted(double(std::max({base.x, base.y, base.z})));
+    const double highlight = std::min(strongest * shape.highlight, 1.0);
+
+    material.metallic = float(m);
+    material.specular = float(highlight);
+    material.shininess = float(shape.exponent);
+    material.diffuse = float(scattered(shape, m, dielectric, highlight));
+    for (int channel = 0; channel < 3; ++channel) {
+        const double b = double(base[channel]);
+        const double fresnel = dielectric + m * (b - dielectric);
+        material.reflection[channel] =
+            fresnel * shape.sharp < faintest ? 0.0F : float(untinted(b) * shape.sharp);
+    }
+}
+
+}  // namespace penumbra

@@ -1,0 +1,40 @@
+// What transforms are and do.
+#pragma once
+
+#include "penumbra/math.h"
+#include "penumbra/scene.h"
+
+#include <cmath>
+
+namespace penumbra {
+
+/// Of a transform's determinant, without its sign: scaled by less than 1e-30 nothing is left of a
+/// mesh, and normalise() must still find an inverse.
+inline constexpr double least_determinant = 1e-90;
+
+/// Of a transform's numbers, for the same reason.
+inline constexpr double largest_in_transform = 1e30;
+
+/// Radii of what is looked at: that far from the origin float32 begins to suffer.
+inline constexpr double far_away = 64;
+
+inline bool finite(const Matrix& transform) {
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column)
+            if (!std::isfinite(transform[row][column])) return false;
+    return true;
+}
+
+/// The factor by which `transform` changes lengths, in the mean over all directions.
+inline double mean_scale(const Matrix& transform) {
+    return std::cbrt(std::abs(transform.determinant()));
+}
+
+/// The centre of a box that lies so far from the origin, more than 64 of its radii, that positions
+/// in float32 suffer; else the origin.
+Vec3 local_origin(const Bounds& box);
+
+/// A box around the transformed box (Arvo 1990).
+Bounds transformed(const Bounds& box, const Matrix& transform);
+
+}  // namespace penumbra

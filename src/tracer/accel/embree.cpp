@@ -1,0 +1,67 @@
+#include "tracer/accel/embree.h"
+
+#include "base/memory.h"
+
+#include "penumbra/limits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace penumbra::embree {
+namespace {
+
+bool may_allocate(void*, ssize_t bytes, bool done) {
+    return done || bytes <= 0 || memory_is_left(std::size_t(bytes));
+}
+
+// Three numbers an item.
+void* new_buffer(const Device& device, const Geometry& geometry, RTCBufferType type,
+                 std::size_t count) {
+    const bool vertices = type == RTC_BUFFER_TYPE_VERTEX;
+    void* const buffer = rtcSetNewGeometryBuffer(
+        geometry.get(), type, 0, vertices ? RTC_FORMAT_FLOAT3 : RTC_FORMAT_UINT3,
+        3 * (vertices ? sizeof(float) : sizeof(unsigned)), std::max<std::size_t>(count, 1));
+    if (buffer != nullptr) return buffer;
+    check(device);
+    throw std::runtime_error("Embree makes no room for a mesh");
+}
+
+}  // namespace
+
+Device new_device() {
+    // ThreadSanitizer does not see how Embree's own threads wait for each other.
+#if defined(__SANITIZE_THREAD__)
+    Device device(rtcNewDevice("threads=1"));
+#else
+    Device device(rtcNewDevice(nullptr));
+#endif
+    rtcSetDeviceMemoryMonitorFunction(device.get(), may_allocate, nullptr);
+    return device;
+}
+
+void check(const Device& device) {
+    switch (rtcGetDeviceError(device.get())) {
+    case RTC_ERROR_NONE: return;
+    case RTC_ERROR_OUT_OF_MEMORY:
+    case RTC_ERROR_CANCELLED:
+        throw MemoryError(Failure::input, "",
+                          memory_limit() == 0
+                              ? std::string("the scene has more facets than there is memory for")
+                              : fmt::format("the scene has more facets than the {} of memory that "
+                                            "may be used suffice for",
+                                            memory_text(memory_limit())));
+    default: throw std::runtime_error("Embree cannot be used");
+    }
+}
+
+float* new_vertices(const Device& device, const Geometry& geometry, std::size_t count) {
+    return static_cast<float*>(new_buffer(device, geometry, RTC_BUFFER_TYPE_VERTEX, count));
+}
+
+unsigned* new_indices(const Device& device, const Geometry& geometry, std::size_t count) {
+    return static_cast<unsigned*>(new_buffer(device, geometry, RTC_BUFFER_TYPE_INDEX, count));
+}
+
+}  // namespace penumbra::embree

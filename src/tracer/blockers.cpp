@@ -1,0 +1,88 @@
+#include "tracer/blockers.h"
+
+#include "tracer/prepared/scene_boxes.h"
+
+#include <algorithm>
+
+namespace penumbra {
+
+namespace {
+
+// Do segments between points and sources on those sides of the plane, or some of them, cross it?
+// Points may lie on it.
+bool plane_between(const PreparedPlane& plane, const Extent& points, const Extent& sources) {
+    constexpr double on_it = 1e-9;
+    const bool above = points.low >= plane.distance - on_it && sources.low > plane.distance;
+    const bool below = points.high <= plane.distance + on_it && sources.high < plane.distance;
+    return !above && !below;
+}
+
+}  // namespace
+
+void PointGroups::clear() {
+    all = {};
+    boxes.clear();
+    along.clear();
+}
+
+void PointGroups::add(const PreparedScene& prepared, const Vec3Array& positions,
+                      const IndexRange& range) {
+    boxes.push_back(box_around(positions, range));
+    all.extend(boxes.back().min);
+    all.extend(boxes.back().max);
+    const Vec3View p(positions);
+    scratch_.resize(range.last - range.first);
+    for (const PreparedPlane& plane : prepared.planes) {
+        const Vec3& n = plane.frame.normal;
+        for (std::size_t i = range.first; i < range.last; ++i)
+            scratch_[i - range.first] = n.x * p.x[i] + n.y * p.y[i] + n.z * p.z[i];
+        along.push_back(extent_of(scratch_.data(), {0, scratch_.size()}));
+    }
+}
+
+void Blockers::find_group(const PreparedScene& prepared, const PointGroups& points,
+                          const SourceGroup& light, bool facets) {
+    const std::size_t index = groups.size();
+    BlockedBy& group = groups.emplace_back();
+    group.first_shape = shapes.size();
+    const auto add = [&](Index object) {
+        group.any = true;
+        if (prepared.material_of(object).opaque) shapes.push_back(object);
+    };
+    for (std::size_t k = 0; k < prepared.planes.size(); ++k)
+        if (plane_between(prepared.planes[k], points.along[index * prepared.planes.size() + k],
+                          light.along[k]))
+            add(prepared.first_plane() + Index(k));
+    if (facets || !spheres_.empty()) {
+        const Shaft shaft = make_shaft(points.boxes[index], light.box);
+        const auto in_shaft = [&](const Bounds& box) { return touches(shaft, box); };
+        const Capsule capsule = make_capsule(points.boxes[index], light.box);
+        for (const Index object : spheres_) {
+            const Sphere& sphere = prepared.sphere(object);
+            if (in_shaft(box_of(sphere)) && touches(capsule, sphere.center, sphere.radius))
+                add(object);
+        }
+        group.facets =
+            facets && visit_boxes(*prepared.facet_boxes, in_shaft, [](Index) { return true; });
+    }
+    group.last_shape = shapes.size();
+    group.any |= group.facets;
+}
+
+void Blockers::find(const PreparedScene& prepared, const PointGroups& points,
+                    const SourceGroup& light) {
+    groups.clear();
+    shapes.clear();
+    spheres_.clear();
+    const Shaft shaft = make_shaft(points.all, light.box);
+    const auto in_shaft = [&](const Bounds& box) { return touches(shaft, box); };
+    visit_boxes(prepared.sphere_boxes, in_shaft, [&](Index sphere) {
+        spheres_.push_back(sphere);
+        return false;
+    });
+    const bool facets = visit_boxes(*prepared.facet_boxes, in_shaft, [](Index) { return true; });
+    for (std::size_t i = 0; i < points.boxes.size(); ++i)
+        find_group(prepared, points, light, facets);
+}
+
+}  // namespace penumbra

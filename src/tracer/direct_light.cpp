@@ -1,0 +1,197 @@
+#include "tracer/direct_light.h"
+
+#include "tracer/prepared/shapes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace penumbra {
+
+namespace {
+
+constexpr std::size_t block_size = 64;  // neighbouring surface points that are looked at together
+
+// ---- shadows -----------------------------------------------------------------------------------
+
+// What translucent surfaces leave of the light along the shadow ray from a surface point: a factor
+// for each crossing, except those within shadow_margin of the one before.
+Vec3 filtered(const PreparedScene& prepared, const SurfacePoints& surfaces, std::size_t slot,
+              const Vec3& toward, double distance, Media& media) {
+    const Vec3 origin = surfaces.position[slot];
+    Vec3 light(1);
+    MediumStack inside = surfaces.inside[slot];
+    double from = 0;
+    while (light != Vec3(0)) {
+        Hit hit = {.t = distance - shadow_margin};
+        const double nearest = from + shadow_margin;
+        const bool shape = translucent_shape(prepared, origin, toward, nearest, hit);
+        const bool facet = prepared.facets->translucent(origin, toward, nearest, hit.t, hit);
+        if (!shape && !facet) break;
+        light *= light_through(prepared, origin, toward, hit);
+        const PreparedMaterial& material = prepared.material_of(hit.object);
+        if (!media.toggle(inside, hit.object) && material.absorbs)
+            for (int c = 0; c < 3; ++c)
+                light[c] *= std::exp(-material.absorption[c] * (hit.t - from));
+        from = hit.t;
+    }
+    return light;
+}
+
+// Takes from the light of every point that gets some what translucent surfaces keep of it.
+void filter_light(const PreparedScene& prepared, const SurfacePoints& surfaces, const Block& block,
+                  LightWork& work) {
+    LightSamples& arrival = work.arrival;
+    work.media.clear();
+    for (std::size_t i = block.first; i < block.last; ++i) {
+        Vec3 light(1);
+        if (arrival.share[i] != 0 && work.receives[i] != 0)
+            light =
+                filtered(prepared, surfaces, i, arrival.toward[i], arrival.distance[i], work.media);
+        if (light == Vec3(0)) arrival.share[i] = 0;
+        arrival.filter.set(i, light);
+        arrival.filtered.set(i, surfaces.pigment[i] * light);
+    }
+}
+
+ShadowRays shadow_rays(const SurfacePoints& surfaces, const LightSamples& arrival) {
+    return {.origin = Vec3View(surfaces.position),
+            .direction = Vec3View(arrival.toward),
+            .distance = arrival.distance.data(),
+            .sin_to_facet = arrival.sin_to_facet.data(),
+            .object = surfaces.object.data()};
+}
+
+// Takes the source from the points of a block that opaque spheres and planes hide it from, and
+// lists those that facets may hide it from.
+void ask(const PreparedScene& prepared, const SurfacePoints& surfaces, std::size_t index,
+         LightWork& work) {
+    const Block& block = work.blocks[index];
+    const BlockedBy& by = work.blockers.groups[index];
+    LightSamples& arrival = work.arrival;
+    block_by_shapes(
+        prepared,
+        std::span(work.blockers.shapes).subspan(by.first_shape, by.last_shape - by.first_shape),
+        shadow_rays(surfaces, arrival), {block.first, block.last}, arrival.share);
+    if (!by.facets) return;
+    find_sin_to_facet(surfaces, block, arrival);
+    for (std::size_t i = block.first; i < block.last; ++i)
+        if (arrival.share[i] != 0 && work.receives[i] != 0) work.asked.push_back(Index(i));
+}
+
+// ---- highlights --------------------------------------------------------------------------------
+
+// M K_S (R.V)^N of the lobes that the surface point shows; `mirrored` is R.V.
+double highlight(const PreparedMaterial& material, const LobeMix& mix, double reflected) {
+    const auto lobe = [&](std::size_t i) {
+        const PreparedLobe& l = material.lobes[i];
+        if (l.specular == 0 || reflected < l.highlight_end) return 0.0;
+        return l.specular * std::pow(reflected, l.shininess);
+    };
+    if (mix.share == 0) return lobe(mix.first);
+    return lobe(mix.first) * (1 - mix.share) + lobe(mix.first + 1) * mix.share;
+}
+
+void add_highlights(const PreparedSource& source, const SurfacePoints& surfaces, const Block& block,
+                    const Vec3Array* filter, LightSamples& arrival, Vec3Array& radiance) {
+    find_reflected(surfaces, block, arrival);
+    for (std::size_t i = block.first; i < block.last; ++i) {
+        const double k = arrival.reflected[i];
+        const PreparedMaterial& material = *surfaces.material[i];
+        if (k <= 0 || arrival.share[i] == 0 || !material.shines) continue;
+        const double amount = highlight(material, surfaces.lobes[i], k);
+        if (amount == 0) continue;
+        Vec3 light = source.color * (amount * arrival.share[i] * surfaces.alpha[i]);
+        if (filter != nullptr) light *= (*filter)[i];
+        if (material.highlight_metallic > 0)
+            light *=
+                metallic_tint(material.highlight_metallic, arrival.cosine[i], surfaces.tint[i]);
+        for (std::size_t c = 0; c < 3; ++c) radiance.axis[c][i] += light[int(c)];
+    }
+}
+
+// ---- one light ---------------------------------------------------------------------------------
+
+void add_open_block(const SourceGroup& light, const SurfacePoints& surfaces, const Block& block,
+                    LightSamples& arrival, Vec3Array& radiance) {
+    if (!block.shines && plain(light)) return add_open_matte(light, surfaces, block, radiance);
+    for (const PreparedSource& source : light.sources) {
+        aim(source, surfaces, block, arrival);
+        weigh(source, block, arrival);
+        add_diffuse(source.color, surfaces.pigment, surfaces.diffuse, block, arrival, radiance);
+        if (block.shines) add_highlights(source, surfaces, block, nullptr, arrival, radiance);
+    }
+}
+
+// The blocks that something may shade, all of them for one source, so that packets are full.
+void add_shaded_blocks(const PreparedScene& prepared, const PreparedSource& source,
+                       const SurfacePoints& surfaces, LightWork& work, Vec3Array& radiance) {
+    LightSamples& arrival = work.arrival;
+    work.asked.clear();
+    for (const std::size_t index : work.shaded) {
+        aim(source, surfaces, work.blocks[index], arrival);
+        weigh(source, work.blocks[index], arrival);
+        ask(prepared, surfaces, index, work);
+    }
+    prepared.facets->occluded(shadow_rays(surfaces, arrival), work.asked, arrival.share);
+    for (const std::size_t index : work.shaded) {
+        const Block& block = work.blocks[index];
+        const Vec3Array* filter = prepared.translucent ? &arrival.filter : nullptr;
+        if (prepared.translucent) filter_light(prepared, surfaces, block, work);
+        add_diffuse(source.color, prepared.translucent ? arrival.filtered : surfaces.pigment,
+                    surfaces.diffuse, block, arrival, radiance);
+        if (block.shines) add_highlights(source, surfaces, block, filter, arrival, radiance);
+    }
+}
+
+void add_light(const PreparedScene& prepared, const SourceGroup& light,
+               const SurfacePoints& surfaces, LightWork& work, Vec3Array& radiance) {
+    work.blockers.find(prepared, work.points, light);
+    work.shaded.clear();
+    for (std::size_t index = 0; index < work.blocks.size(); ++index) {
+        if (prepared.shadows && work.blockers.groups[index].any)
+            work.shaded.push_back(index);
+        else
+            add_open_block(light, surfaces, work.blocks[index], work.arrival, radiance);
+    }
+    if (work.shaded.empty()) return;
+    for (const PreparedSource& source : light.sources)
+        add_shaded_blocks(prepared, source, surfaces, work, radiance);
+}
+
+// What is the same for all lights.
+void find_blocks(const PreparedScene& prepared, const SurfacePoints& surfaces, LightWork& work) {
+    work.blocks.clear();
+    work.points.clear();
+    for (std::size_t first = 0; first < surfaces.count; first += block_size) {
+        Block block = {.first = first, .last = std::min(first + block_size, surfaces.count)};
+        for (std::size_t i = block.first; i < block.last; ++i) {
+            const bool shines = surfaces.material[i]->shines && surfaces.alpha[i] > 0;
+            block.shines |= shines;
+            work.receives[i] = shines || surfaces.diffuse[i] > 0;
+        }
+        work.points.add(prepared, surfaces.position, {block.first, block.last});
+        work.blocks.push_back(block);
+    }
+}
+
+}  // namespace
+
+Vec3 metallic_tint(double metallic, double cosine, const Vec3& pigment) {
+    const double x = std::acos(std::clamp(cosine, -1.0, 1.0)) / (std::numbers::pi / 2);
+    const double curve =
+        std::clamp(0.014567225 / ((x - 1.12) * (x - 1.12)) - 0.011612903, 0.0, 1.0);
+    return Vec3(1) + (pigment - Vec3(1)) * (metallic * (1 - curve));
+}
+
+void add_direct_light(const PreparedScene& prepared, const SurfacePoints& surfaces, LightWork& work,
+                      Vec3Array& radiance) {
+    if (surfaces.count == 0) return;
+    for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t i = 0; i < surfaces.count; ++i)
+            radiance.axis[c][i] += surfaces.emitted.axis[c][i];
+    find_blocks(prepared, surfaces, work);
+    for (const SourceGroup& light : prepared.lights)
+        add_light(prepared, light, surfaces, work, radiance);
+}
+
+}  // namespace penumbra

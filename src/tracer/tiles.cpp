@@ -1,0 +1,273 @@
+// The loops over the tiles of a picture and over the generations of rays of a tile.
+#include "tracer/tiles.h"
+
+#include "base/isolated.h"
+#include "scene/view.h"
+#include "tracer/back_light.h"
+#include "tracer/direct_light.h"
+#include "tracer/prepared/shapes.h"
+#include "tracer/ray_order.h"
+#include "tracer/scatter.h"
+#include "tracer/tile_rows.h"
+
+#include "penumbra/light_model.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <mutex>
+
+namespace penumbra {
+
+namespace {
+
+// A point of a pixel relative to its centre, in pixels, and how much it counts.
+struct PixelSample {
+    double x = 0, y = 0, weight = 1;
+};
+
+// POV-Ray's fixed grid (`+AM1 +R<n> +A0.0 -J`): n x n and the centre once more.
+std::vector<PixelSample> pixel_samples(int n, const Shift& shift) {
+    const double x = shift.x, y = shift.y;
+    if (n <= 1) return {{x, y}};
+    const double weight = 1.0 / (n * n + 1);
+    std::vector<PixelSample> samples = {{x, y, weight}};
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i)
+            samples.push_back({x + (i + 0.5) / n - 0.5, y + (j + 0.5) / n - 0.5, weight});
+    return samples;
+}
+
+// What one thread needs to trace a tile; kept from tile to tile.
+struct Workspace {
+    Generation current, next;
+    Hits hits;
+    std::vector<Index> shapes;  // scratch
+    SurfacePoints surfaces;
+    std::vector<std::uint64_t> order, sorted;  // of the rays that hit: a key and the ray
+    std::vector<std::size_t> ray_of;           // surface point -> ray
+    Vec3Array radiance;
+    LightWork light;
+    Media media;               // of the tile's paths
+    std::vector<Vec3> pixels;  // of the tile
+
+    Workspace()
+        : current(capacity), next(capacity), hits(capacity), surfaces(capacity), radiance(capacity),
+          light(capacity), pixels(capacity) {}
+
+    static constexpr std::size_t capacity = std::size_t(tile_side) * tile_side;
+};
+
+// One picture of a scene.
+struct Job {
+    const PreparedScene& prepared;
+    const View view;
+    const RenderOptions& options;
+    const std::vector<PixelSample> samples;
+    const MediumStack inside;  // where the eye is
+};
+
+// The ray through a point of the picture, in pixels from its upper left corner.
+CameraRay ray_through(const View& view, const RenderOptions& options, double x, double y) {
+    return camera_ray(view, x / options.width - 0.5, 0.5 - y / options.height);
+}
+
+struct TilePixel {
+    int x = 0, y = 0;
+};
+
+// The pixels of a tile along a Z-order curve (Morton 1966): the bits of x and y take turns.
+constexpr std::array<TilePixel, std::size_t(tile_side) * tile_side> curve = [] {
+    std::array<TilePixel, std::size_t(tile_side) * tile_side> pixels{};
+    for (unsigned i = 0; i < pixels.size(); ++i)
+        for (unsigned bit = 0; bit < 5; ++bit) {
+            pixels[i].x |= int(i >> bit & 1U << bit);
+            pixels[i].y |= int(i >> (bit + 1) & 1U << bit);
+        }
+    return pixels;
+}();
+
+// The rays of a packet are close together, and so are those of a few packets.
+void primary_rays(const Job& job, const PictureTile& tile, const PixelSample& sample,
+                  Generation& rays) {
+    rays.clear();
+    for (const auto& [x, y] : curve) {
+        if (x >= tile.width || y >= tile.height) continue;
+        const Path path = {.weight = Vec3(sample.weight),
+                           .pixel = std::uint32_t(y * tile.width + x),
+                           .inside = job.inside};
+        // The pixel's centre first, as POV-Ray adds.
+        const CameraRay ray = ray_through(job.view, job.options, tile.x + x + sample.x + 0.5,
+                                          tile.y + y + sample.y + 0.5);
+        rays.push(ray.origin, ray.direction, path);
+    }
+}
+
+void find_hits(const PreparedScene& prepared, bool coherent, Workspace& work) {
+    work.hits.clear(work.current.rays.count);
+    closest_shapes(prepared, work.current.rays, work.hits, work.shapes);
+    prepared.facets->closest(work.current.rays, work.hits, coherent);
+}
+
+// What a ray that hits nothing sees.
+Vec3 sky_light(const PreparedScene& prepared, const Vec3& direction) {
+    if (!prepared.scene.sky) return Vec3(prepared.scene.background);
+    const Vec2 uv = sky_texcoord(direction);
+    return Vec3(sample(prepared.textures[prepared.scene.sky->texture], uv.x, uv.y)) *
+           prepared.scene.sky->gain;
+}
+
+// Lists the rays that hit something. What mirrors scatter is brought together again, so that blocks
+// of surface points stay small.
+void order_hits(const PreparedScene& prepared, bool coherent, Workspace& work) {
+    const Generation& rays = work.current;
+    work.order.clear();
+    for (std::size_t i = 0; i < rays.rays.count; ++i) {
+        if (work.hits.object[i] == no_index) {
+            work.pixels[rays.paths[i].pixel] +=
+                rays.paths[i].weight * sky_light(prepared, rays.rays.direction[i]);
+            continue;
+        }
+        std::uint64_t key = 0;
+        if (!coherent)
+            key = place_on_curve(rays.rays.origin[i] + rays.rays.direction[i] * work.hits.t[i],
+                                 prepared.surroundings);
+        work.order.push_back(key << 32U | i);
+    }
+    if (!coherent) sort_by_key(work.order, work.sorted);
+}
+
+void find_surface_points(const PreparedScene& prepared, Workspace& work) {
+    const Generation& rays = work.current;
+    const std::size_t most = prepared.blended ? 2 * rays.rays.count : rays.rays.count;
+    if (work.surfaces.material.size() < most) {
+        work.surfaces.resize(most);
+        work.light = LightWork(most);
+    }
+    work.surfaces.count = 0;
+    work.ray_of.clear();
+    for (const std::uint64_t entry : work.order) {
+        const std::size_t i = entry & 0xFFFFFFFFU;
+        work.surfaces.inside[work.surfaces.count] = rays.paths[i].inside;
+        const std::size_t found =
+            find_surface_point(prepared, rays.rays.origin[i], rays.rays.direction[i], work.hits[i],
+                               work.surfaces, work.surfaces.count);
+        work.surfaces.count += found;
+        work.ray_of.insert(work.ray_of.end(), found, i);
+    }
+}
+
+// Adds the light of a surface point to its pixel, and goes on from there.
+void follow(const Job& job, std::size_t point, const Path& path, Workspace& work) {
+    work.pixels[path.pixel] += path.weight * work.radiance[point];
+    scatter(job.prepared, work.surfaces, point, path,
+            {job.options.max_depth, work.media, work.next});
+}
+
+// One generation after the other: all rays of a tile that were reflected equally often are traced
+// together, then what they send on. The recursion of the light model is this loop.
+void trace_generations(const Job& job, Workspace& work) {
+    bool coherent = true;
+    while (work.current.rays.count > 0) {
+        find_hits(job.prepared, coherent, work);
+        order_hits(job.prepared, coherent, work);
+        find_surface_points(job.prepared, work);
+        work.radiance.clear(work.surfaces.count);
+        add_direct_light(job.prepared, work.surfaces, work.light, work.radiance);
+        if (job.prepared.backlit) add_back_light(job.prepared, work.surfaces, work.radiance);
+        work.next.clear();
+        for (std::size_t k = 0; k < work.surfaces.count; ++k) {
+            const Path& path = work.current.paths[work.ray_of[k]];
+            const double share = work.surfaces.share[k];
+            if (share == 1) {
+                follow(job, k, path, work);
+            } else if (share > 0) {
+                Path part = path;
+                part.weight *= share;
+                follow(job, k, part, work);
+            }
+        }
+        std::swap(work.current, work.next);
+        coherent = false;
+    }
+}
+
+// `rows` begin with the first of the tile.
+void render_tile(const Job& job, const PictureTile& tile, Workspace& work, Image& rows) {
+    work.pixels.assign(Workspace::capacity, Vec3(0));
+    for (const PixelSample& sample : job.samples) {
+        work.media.clear();
+        primary_rays(job, tile, sample, work.current);
+        trace_generations(job, work);
+    }
+    for (int y = 0; y < tile.height; ++y)
+        for (int x = 0; x < tile.width; ++x)
+            rows.at(tile.x + x, y) =
+                Color(work.pixels[std::size_t(y) * std::size_t(tile.width) + std::size_t(x)]);
+}
+
+// What one thread does until no tiles are left.
+void work_on(const Job& job, const Watch& watch, std::mutex& reporting, TileRows& tiles) {
+    Workspace work;
+    while (const auto next = tiles.next()) {
+        if (watch.stop.stop_requested()) return tiles.stop();
+        render_tile(job, next->tile, work, *next->rows);
+        const double done = tiles.finish(next->tile);
+        if (!watch.progress) continue;
+        const std::lock_guard lock(reporting);
+        call_isolated([&] { watch.progress(done); });
+    }
+}
+
+}  // namespace
+
+void render_tiles(const Shot& shot, const RowRange& rows, const TakeRows& take,
+                  const Watch& watch) {
+    const View view = view_of(shot.camera, shot.options.width, shot.options.height);
+    Media media;  // around the eye
+    const Job job = {shot.prepared, view, shot.options,
+                     pixel_samples(shot.options.samples, shot.shift),
+                     media_at(shot.prepared, view.location, media)};
+    TileRows tiles(shot.options, rows, take);
+    std::mutex reporting;
+    const int threads = tbb::this_task_arena::max_concurrency();
+    tbb::parallel_for(
+        tbb::blocked_range<int>(0, threads, 1),
+        [&](const tbb::blocked_range<int>&) {
+            try {
+                work_on(job, watch, reporting, tiles);
+            } catch (...) {
+                tiles.stop();  // or the others would wait for this one
+                throw;
+            }
+        },
+        tbb::simple_partitioner());
+    if (watch.stop.stop_requested()) throw Error(Failure::interrupted, "", "interrupted");
+}
+
+std::vector<Index> objects_in_picture(const Shot& shot) {
+    const RenderOptions& options = shot.options;
+    const View view = view_of(shot.camera, options.width, options.height);
+    const auto width = std::size_t(options.width), height = std::size_t(options.height);
+    std::vector<Index> objects(width * height, no_index);
+    tbb::parallel_for(std::size_t(0), height, [&](std::size_t y) {
+        Rays rays(width);
+        for (rays.count = 0; rays.count < width; ++rays.count) {
+            const CameraRay ray =
+                ray_through(view, options, double(rays.count) + 0.5, double(y) + 0.5);
+            rays.origin.set(rays.count, ray.origin);
+            rays.direction.set(rays.count, ray.direction);
+        }
+        Hits hits(width);
+        std::vector<Index> scratch;
+        closest_shapes(shot.prepared, rays, hits, scratch);
+        shot.prepared.facets->closest(rays, hits, true);
+        std::ranges::copy(hits.object, objects.begin() + std::ptrdiff_t(y * width));
+    });
+    return objects;
+}
+
+}  // namespace penumbra

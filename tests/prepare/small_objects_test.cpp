@@ -1,0 +1,93 @@
+// What is too small for its scene is said.
+#include "prepare/small_objects.h"
+#include "support/small_scenes.h"
+#include "support/support.h"
+
+#include "penumbra/prepare.h"
+
+#include <catch2/catch_test_macros.hpp>
+
+using namespace penumbra;
+
+namespace {
+
+constexpr int width = 160, height = 120;
+
+Losses losses_of(const Scene& scene) {
+    return losses_by_size(scene, bounds(scene), width, height);
+}
+
+// Ground of that side, and a camera that sees one unit around the origin from near.
+Scene ground(float side) {
+    Scene scene = test::empty_scene();
+    const float h = side / 2;
+    test::add_mesh(scene, {{-h, 0, -h}, {h, 0, -h}, {h, 0, h}, {-h, 0, h}}, {{0, 2, 1}, {0, 3, 2}});
+    scene.cameras[0].position = {0, 0.5, 2};
+    return scene;
+}
+
+void add_plate(Scene& scene, const Vec3f& size) {
+    std::vector<Vec3f> corners;
+    for (unsigned i = 0; i < 8; ++i)
+        corners.push_back(size * Vec3f(float(i & 1U), float(i >> 1U & 1U), float(i >> 2U & 1U)));
+    test::add_mesh(scene, corners,
+                   {{0, 1, 3},
+                    {0, 3, 2},
+                    {4, 7, 5},
+                    {4, 6, 7},
+                    {0, 4, 5},
+                    {0, 5, 1},
+                    {2, 3, 7},
+                    {2, 7, 6},
+                    {0, 2, 6},
+                    {0, 6, 4},
+                    {1, 5, 7},
+                    {1, 7, 3}});
+    scene.instances.back().name = "plate";
+}
+
+}  // namespace
+
+TEST_CASE("Thin things in a large scene are a loss, which names the size") {
+    Scene scene = ground(100000);
+    CHECK(losses_of(scene).empty());  // the ground itself is flat
+    add_plate(scene, {0.4F, 0.004F, 0.3F});
+    const Losses losses = losses_of(scene);
+    REQUIRE(losses.size() == 1);
+    CHECK(losses[0].kind == Loss::approximated);
+    CHECK(losses[0].count == 1);
+    INFO(losses[0].what);
+    CHECK(losses[0].what.find("1 of 2 objects is thinner than") == 0);
+    CHECK(losses[0].what.find("'plate', of 0.004") != std::string::npos);
+
+    Scene small = ground(1);
+    add_plate(small, {0.4F, 0.004F, 0.3F});
+    CHECK(losses_of(small).empty());
+}
+
+TEST_CASE("An object that is turned is as thin as before") {
+    Scene scene = ground(100000);
+    add_plate(scene, {0.4F, 0.004F, 0.3F});
+    scene.instances.back().transform.rotate(Vec3(0.5, 0.3, 0.8));
+    REQUIRE(losses_of(scene).size() == 1);
+}
+
+TEST_CASE("Where all objects are smaller than a pixel, the farthest is named") {
+    Scene scene = test::empty_scene();
+    scene.spheres = {{.name = "a"},
+                     {.name = "b", .center = {3, 0, 0}},
+                     {.name = "lost", .center = {1e6, 0, 0}},
+                     {.name = "c", .center = {0, 3, 0}}};
+    scene.cameras.clear();
+    complete(scene, double(width) / height);
+    const Losses losses = losses_of(scene);
+    REQUIRE(!losses.empty());
+    INFO(losses.back().what);
+    CHECK(losses.back().place == "camera");
+    CHECK(losses.back().what.find("'lost' at (1e+06, 0, 0)") != std::string::npos);
+
+    scene.spheres.erase(scene.spheres.begin() + 2);
+    scene.cameras.clear();
+    complete(scene, double(width) / height);
+    CHECK(losses_of(scene).empty());
+}

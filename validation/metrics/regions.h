@@ -1,0 +1,26 @@
+// Parts of a picture, as matrices of picture.h.
+#pragma once
+
+#include "validation/metrics/picture.h"
+
+#include "penumbra/compare.h"
+
+#include <opencv2/core.hpp>
+
+namespace penumbra::metrics {
+
+/// Pixels that count: not ignored by the options. Throws Error (usage) when the mask has another
+/// size than the pictures.
+cv::Mat counted_pixels(const CompareOptions& options, int width, int height);
+
+/// Where either picture shows something else than the background.
+cv::Mat covered_pixels(const Shown& test, const Shown& reference, const Background& background);
+
+/// Pixels beside an edge: whose 3 x 3 neighbourhood spans more than a tenth in some channel.
+cv::Mat edge_band(const cv::Mat& encoded);
+
+/// Where each picture shows a colour, with its alpha, that the other one has no more than `radius`
+/// pixels away, within `step`.
+cv::Mat matched_pixels(const Shown& test, const Shown& reference, int radius, double step);
+
+}  // namespace penumbra::metrics

@@ -1,0 +1,66 @@
+# Writes the scripts and styles of this folder as C++: cmake -D OUTPUT=web.cpp -P embed.cmake.
+# The comment at the head of a file is for its readers and stays out of the pages.
+cmake_minimum_required(VERSION 3.25)
+
+# The text of a file without its first comment, as it stands between the tags of a page.
+function(read_text file result)
+    file(READ ${CMAKE_CURRENT_LIST_DIR}/${file} text)
+    string(REGEX MATCH "^((//[^\n]*\n)+|/[*][^\n]*[*]/\n)" comment "${text}")
+    string(LENGTH "${comment}" length)
+    string(SUBSTRING "${text}" ${length} -1 text)
+    set(${result} "\n${text}" PARENT_SCOPE)
+endfunction()
+
+# base64 (RFC 4648) of bytes in hexadecimal digits.
+function(base64 hex result)
+    set(alphabet ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/)
+    string(LENGTH ${hex} digits)
+    # Three bytes are six digits are four characters.
+    math(EXPR missing "(6 - ${digits} % 6) % 6 / 2")
+    string(REPEAT 00 ${missing} zeros)
+    set(text)
+    string(REGEX MATCHALL "......" groups ${hex}${zeros})
+    foreach(group IN LISTS groups)
+        foreach(shift 18 12 6 0)
+            math(EXPR index "0x${group} >> ${shift} & 63")
+            string(SUBSTRING ${alphabet} ${index} 1 character)
+            string(APPEND text ${character})
+        endforeach()
+    endforeach()
+    string(LENGTH ${text} length)
+    math(EXPR length "${length} - ${missing}")
+    string(SUBSTRING ${text} 0 ${length} text)
+    string(REPEAT = ${missing} padding)
+    set(${result} ${text}${padding} PARENT_SCOPE)
+endfunction()
+
+# A literal of C++ with this text.
+function(literal text result)
+    string(FIND "${text}" ")web\"" end)
+    if(NOT end EQUAL -1)
+        message(FATAL_ERROR "the delimiter of the literals occurs in the texts: choose another one")
+    endif()
+    set(${result} "R\"web(${text})web\"" PARENT_SCOPE)
+endfunction()
+
+# The definition of a Script: the files one after the other, and the hash that lets a page run them.
+function(script name)
+    set(text)
+    foreach(file IN LISTS ARGN)
+        read_text(${file} part)
+        string(APPEND text "${part}")
+    endforeach()
+    string(SHA256 hex "${text}")
+    base64(${hex} hash)
+    literal("${text}" code)
+    set(cpp "${cpp}const Script ${name} = {${code},\n    \"sha256-${hash}\"};\n\n" PARENT_SCOPE)
+endfunction()
+
+set(cpp "// Made from validation/report/web by embed.cmake.\n")
+string(APPEND cpp "#include \"validation/report/web.h\"\n\nnamespace penumbra::html {\n\n")
+script(case_script viewer.js controls.js)
+script(index_script index.js)
+read_text(style.css text)
+literal("${text}" code)
+string(APPEND cpp "const std::string_view report_style = ${code};\n\n}  // namespace penumbra::html\n")
+file(WRITE ${OUTPUT} "${cpp}")
