@@ -1,6 +1,6 @@
 // What one-sided facets need before a scene can be shown: those that lie back to back, and a word
 // about the backs that cannot be hidden.
-#include "base/hash.h"
+#include "prepare/body.h"
 #include "scene/sides.h"
 #include "scene/transforms.h"
 #include "scene/vertex_arrays.h"
@@ -12,22 +12,14 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <map>
 #include <set>
-#include <span>
 #include <tuple>
 
 namespace penumbra {
 
 namespace {
-
-// Equal numbers have equal bits, 0 and -0 too.
-std::uint64_t hash_of_point(const Vec3f& p) {
-    const std::array<float, 3> numbers = {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F};
-    return hash_of(std::as_bytes(std::span(numbers)));
-}
 
 // ---- back to back ------------------------------------------------------------------------------
 
@@ -113,44 +105,6 @@ void lift(Mesh& mesh, const Matrix& to_world, const std::set<Index>& facets, dou
 
 // ---- backs that show ---------------------------------------------------------------------------
 
-// Different for (a, b) and (b, a).
-std::uint64_t hash_of_edge(std::uint64_t a, std::uint64_t b) {
-    const std::uint64_t mixed = (a ^ std::rotl(b, 31)) * 0x9E3779B97F4A7C15U;
-    return mixed ^ (mixed >> 32U);
-}
-
-// Vertices by their places, to a millionth of the mesh: seams are closed but for rounding.
-std::vector<std::uint64_t> places_of(const Mesh& mesh) {
-    Bounds box;
-    for (const Vec3f& p : mesh.positions) box.extend(Vec3(p));
-    const double scale = box.radius() > 0 ? 1e6 / box.radius() : 0;
-    std::vector<std::uint64_t> places;
-    places.reserve(mesh.positions.size());
-    for (const Vec3f& p : mesh.positions) {
-        const Vec3 at = (Vec3(p) - box.min) * scale;
-        places.push_back(hash_of_point(
-            {float(std::round(at.x)), float(std::round(at.y)), float(std::round(at.z))}));
-    }
-    return places;
-}
-
-// Is the mesh the surface of a body, seen from outside? Every edge then runs as often one way as
-// the other, so that a sum over the hashes of both ways is 0, and the volume is positive (the sum
-// of the tetrahedra between one point and the facets).
-bool around_a_body(const Mesh& mesh) {
-    const std::vector<std::uint64_t> places = places_of(mesh);
-    std::uint64_t open = 0;
-    double volume = 0;
-    const Vec3 apex = mesh.positions.empty() ? Vec3(0) : Vec3(mesh.positions[0]);
-    for (const auto& [a, b, c] : mesh.triangles) {
-        for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
-            open += hash_of_edge(places[from], places[to]) - hash_of_edge(places[to], places[from]);
-        volume += (Vec3(mesh.positions[a]) - apex)
-                      .dot((Vec3(mesh.positions[b]) - apex).cross(Vec3(mesh.positions[c]) - apex));
-    }
-    return open == 0 && volume > 0;
-}
-
 std::string what_shows(const Backs& backs) {
     const char* const why = "POV-Ray tells the sides of smooth facets by their normals";
     if (!backs.hidden) return fmt::format("the backs of its facets are shown: {}", why);
@@ -206,7 +160,7 @@ Losses shown_backs(const Scene& scene) {
         const Index index = scene.instances[i].mesh;
         const Mesh& mesh = scene.meshes[index];
         const auto [body, unknown] = bodies.try_emplace(index, false);
-        if (unknown) body->second = opaque(scene.materials[mesh.material]) && around_a_body(mesh);
+        if (unknown) body->second = opaque(scene.materials[mesh.material]) && bounds_body(mesh);
         // The fronts of a body are to be seen as well.
         if (body->second && (!all[i].hidden || all[i].from > 0)) continue;
         const auto [entry, added] = worst.try_emplace(mesh.material, all[i]);

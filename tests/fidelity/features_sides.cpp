@@ -90,7 +90,8 @@ Feature smooth(int around) {
 }
 
 // Two sheets, each of two colours that lie back to back: one folded, of one mesh, the other of two.
-Feature back_to_back() {
+Feature back_to_back(const std::string& name, const std::vector<std::uint16_t>& backs,
+                     const std::string& loss) {
     Gltf gltf;
     const std::vector<float> fold = {-1.1F, 0,    0, -0.5F, 0,    0.6F, 0, 0,    0.1F,
                                      -1.1F, 1.2F, 0, -0.5F, 1.2F, 0.6F, 0, 1.2F, 0.1F};
@@ -104,12 +105,12 @@ Feature back_to_back() {
     };
     gltf.add("meshes", {{"primitives",
                          {show({0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4}, {0.8, 0.2, 0.1, 1}),
-                          show({4, 1, 0, 3, 4, 0, 5, 2, 1, 4, 5, 1}, {0.1, 0.3, 0.8, 1})}}});
+                          show(backs, {0.1, 0.3, 0.8, 1})}}});
     gltf.root["nodes"] = {{{"mesh", 0}},
                           {{"mesh", 0}, {"translation", {0.2, 0, 0.4}}, {"scale", {-1, 1, -0.8}}}};
     gltf.root["scenes"] = {{{"nodes", {0, 1}}}};
-    Feature feature = staged("single-sided, back to back", gltf, stage());
-    feature.loss = "that lie back to back are moved apart";
+    Feature feature = staged(name, gltf, stage());
+    feature.loss = loss;
     return feature;
 }
 
@@ -136,7 +137,10 @@ std::vector<Feature> side_features() {
             blended(),
             colored("single-sided, vertex colours", pipe(9, false)),
             colors,
-            back_to_back(),
+            back_to_back("single-sided, back to back", {4, 1, 0, 3, 4, 0, 5, 2, 1, 4, 5, 1},
+                         "that lie back to back are moved apart"),
+            back_to_back("single-sided, back to back along other diagonals",
+                         {1, 0, 3, 4, 1, 3, 2, 1, 4, 5, 2, 4}, "lie in one plane with others"),
             sides_of_obj()};
 }
 

@@ -156,14 +156,17 @@ struct Side {
     bool plain = false;  // looks like any other of its material
     bool opaque = true;
     bool solid = true;  // only its front is seen
+    bool one_sided = false;
 };
 
 // Does it make a difference which of the two is seen?
 bool must_be_parted(const Side& a, const Side& b, bool facing) {
-    if (a.material == b.material && a.plain && b.plain) return false;
+    // A ray that passes a back which is not shown misses a front that lies no farther.
+    const bool holes = !facing && (a.one_sided || b.one_sided);
+    if (a.material == b.material && a.plain && b.plain && !holes) return false;
     // Where two bodies touch nobody looks, and the two sides of a sheet may be two facets.
     const bool bodies = a.opaque && b.opaque && a.solid && b.solid;
-    const bool sheet = a.instance == b.instance && a.material == b.material;
+    const bool sheet = a.instance == b.instance && a.material == b.material && !holes;
     return facing || !(bodies || sheet);
 }
 
@@ -174,7 +177,8 @@ Side side_of(const WorldFacets& facets, Index number) {
             .material = facets.mesh_of(instance).material,
             .plain = facets.plain(instance, facet),
             .opaque = opaque(facets.material_of(instance)),
-            .solid = facets.solid(instance, facet)};
+            .solid = facets.solid(instance, facet),
+            .one_sided = facets.material_of(instance).sides == Sides::front};
 }
 
 class Overlaps {
@@ -234,10 +238,11 @@ class Overlaps {
         const std::uint64_t both = std::uint64_t(lower) << 32 | upper;
         if (known_.contains(both) || !overlap(at_a, at_b)) return;
         const bool facing = at_a.normal.dot(at_b.normal) > 0;
-        const Side below = side_of(facets_, a);
-        if (!must_be_parted(below, side_of(facets_, b), facing)) return;
+        const Side below = side_of(facets_, a), above = side_of(facets_, b);
+        if (!must_be_parted(below, above, facing)) return;
         known_.insert(both);
-        found_.push_back({lower, upper, facing, !facing && below.solid});
+        // What shows one side goes towards that one.
+        found_.push_back({lower, upper, facing, !facing && below.solid && !above.one_sided});
     }
 
     bool lies_on_patch(Index facet, Index other) {

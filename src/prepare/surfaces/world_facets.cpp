@@ -1,5 +1,6 @@
 #include "prepare/surfaces/world_facets.h"
 
+#include "prepare/body.h"
 #include "prepare/scale.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 namespace penumbra {
 
 WorldFacets::WorldFacets(const Scene& scene)
-    : scene_(scene), first_{0}, corners_(scene.meshes.size()) {
+    : scene_(scene), first_{0}, corners_(scene.meshes.size()), bodies_(scene.meshes.size()) {
     const Bounds box = bounds(scene);
     if (!box.empty()) origin_ = box.center();
     factor_ = normalising_factor(box);
@@ -96,6 +97,11 @@ bool neighbours_behind(const Mesh& mesh, const MeshCorners& corners, Index facet
 bool WorldFacets::solid(Index instance, Index facet) const {
     const Mesh& mesh = mesh_of(instance);
     const Index index = scene_.instances[instance].mesh;
+    if (material_of(instance).sides == Sides::front) {
+        auto& body = bodies_[index];
+        if (!body) body = bounds_body(mesh);
+        if (!*body) return false;
+    }
     const auto& [a, b, c] = mesh.triangles[facet];
     const Vec3 corner(mesh.positions[a]);
     const MeshPlane plane = {

@@ -56,7 +56,8 @@ class WorldFacets {
     bool plain(Index instance, Index facet) const;
 
     /// Is the facet part of a body that lies behind it, so that only its front is seen? All of its
-    /// mesh does, or all that meets its corners: not every body is recognised.
+    /// mesh does, or all that meets its corners: not every body is recognised. Through the gaps of
+    /// an open mesh that shows one side others are seen.
     bool solid(Index instance, Index facet) const;
 
   private:
@@ -66,7 +67,9 @@ class WorldFacets {
     std::vector<Index> first_;                                 // and behind the last one
     std::vector<bool> mirrored_;                               // of each instance
     std::vector<Bounds> boxes_;                                // around the meshes
-    mutable std::vector<std::optional<MeshCorners>> corners_;  // of those that were asked
+    // Of those that were asked:
+    mutable std::vector<std::optional<MeshCorners>> corners_;
+    mutable std::vector<std::optional<bool>> bodies_;
 };
 
 }  // namespace penumbra

@@ -1,0 +1,63 @@
+#include "prepare/body.h"
+
+#include "base/hash.h"
+
+#include "penumbra/scene.h"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace penumbra {
+
+// Equal numbers have equal bits, 0 and -0 too.
+std::uint64_t hash_of_point(const Vec3f& p) {
+    const std::array<float, 3> numbers = {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F};
+    return hash_of(std::as_bytes(std::span(numbers)));
+}
+
+namespace {
+
+// Different for (a, b) and (b, a).
+std::uint64_t hash_of_edge(std::uint64_t a, std::uint64_t b) {
+    const std::uint64_t mixed = (a ^ std::rotl(b, 31)) * 0x9E3779B97F4A7C15U;
+    return mixed ^ (mixed >> 32U);
+}
+
+// Vertices by their places, to a millionth of the mesh: seams are closed but for rounding.
+std::vector<std::uint64_t> places_of(const Mesh& mesh) {
+    Bounds box;
+    for (const Vec3f& p : mesh.positions) box.extend(Vec3(p));
+    const double scale = box.radius() > 0 ? 1e6 / box.radius() : 0;
+    std::vector<std::uint64_t> places;
+    places.reserve(mesh.positions.size());
+    for (const Vec3f& p : mesh.positions) {
+        const Vec3 at = (Vec3(p) - box.min) * scale;
+        places.push_back(hash_of_point(
+            {float(std::round(at.x)), float(std::round(at.y)), float(std::round(at.z))}));
+    }
+    return places;
+}
+
+}  // namespace
+
+// Every edge then runs as often one way as the other, so that a sum over the hashes of both ways
+// is 0, and the volume is positive (the sum of the tetrahedra between one point and the facets).
+bool bounds_body(const Mesh& mesh) {
+    const std::vector<std::uint64_t> places = places_of(mesh);
+    std::uint64_t open = 0;
+    double volume = 0;
+    const Vec3 apex = mesh.positions.empty() ? Vec3(0) : Vec3(mesh.positions[0]);
+    for (const auto& [a, b, c] : mesh.triangles) {
+        for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
+            open += hash_of_edge(places[from], places[to]) - hash_of_edge(places[to], places[from]);
+        volume += (Vec3(mesh.positions[a]) - apex)
+                      .dot((Vec3(mesh.positions[b]) - apex).cross(Vec3(mesh.positions[c]) - apex));
+    }
+    return open == 0 && volume > 0;
+}
+
+}  // namespace penumbra
