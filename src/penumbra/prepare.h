@@ -84,8 +84,8 @@ Losses settle_normal_maps(Scene& scene, NormalMaps choice);
 
 /// A scene in the units that both renderers work in. POV-Ray's tolerances are absolute, so all
 /// lengths are multiplied by one power of two that brings the radius of the bounded geometry into
-/// [8, 16); a scene far from the origin (more than 64 radii) is moved there first,
-/// and so is a mesh whose vertices lie as far from the mesh's own origin.
+/// [128, 256); a scene whose middle is farther from the origin than its radius is moved there
+/// first, and so is a mesh whose vertices lie as far from the mesh's own origin.
 /// Meshes are rescaled by powers of two so that their instances have a scale near 1. Exposure
 /// is folded into lights, ambience, emission and background. Material::color is multiplied into
 /// the texture (16 bit linear) where POV-Ray cannot layer it: metallic, emissive and translucent

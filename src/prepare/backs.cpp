@@ -1,7 +1,9 @@
 // What one-sided facets need before a scene can be shown: those that lie back to back, and a word
 // about the backs that cannot be hidden.
 #include "prepare/body.h"
+#include "prepare/scale.h"
 #include "scene/sides.h"
+#include "scene/tolerances.h"
 #include "scene/transforms.h"
 #include "scene/vertex_arrays.h"
 
@@ -108,11 +110,9 @@ void lift(Mesh& mesh, const Matrix& to_world, const std::set<Index>& facets, dou
 std::string what_shows(const Backs& backs) {
     const char* const why = "POV-Ray tells the sides of smooth facets by their normals";
     if (!backs.hidden) return fmt::format("the backs of its facets are shown: {}", why);
-    if (backs.from > 0)
-        return fmt::format("its backs are shown where they are seen at less than {} degrees: {}",
-                           backs.lean, why);
-    return fmt::format("its fronts are left out where they are seen at less than {} degrees: {}",
-                       backs.lean, why);
+    return fmt::format("its {} where they are seen at less than {} degree{}: {}",
+                       backs.from > 0 ? "backs are shown" : "fronts are left out", backs.lean,
+                       backs.lean == 1 ? "" : "s", why);
 }
 
 }  // namespace
@@ -140,9 +140,9 @@ std::size_t lift_back_to_back_facets(Scene& scene) {
             of_mesh.insert(one.facet);
         }
     }
-    // Normalised, the scene's radius is 8 to 16, and this 1e-4 to 2e-4: twice that lies between
-    // both, more than POV-Ray's least distance, and far more than float32's rounding.
-    const double height = box.radius() * 1.25e-5;
+    // Twice that lies between both: more than POV-Ray's least distance, and far more than float32's
+    // rounding.
+    const double height = 4 * least_distance / normalising_factor(box);
     std::size_t count = 0;
     for (const auto& [mesh, of_mesh] : lifted) {
         lift(scene.meshes[mesh], scene.instances[of_mesh.first].transform, of_mesh.second, height);

@@ -62,12 +62,19 @@ Vec3f own_origin(const Mesh& mesh, double scale, double radius) {
     return origin;
 }
 
+// Where POV-Ray 3.7 mixes the textures of a facet's corners it takes a determinant for 0 whose square
+// is below 1e-10, in the mesh's own units (source/backend/shape/triangle.cpp, Calculate_Smooth_T). At
+// a radius of 8 that is far above float32's rounding and far below all but the smallest facets.
+constexpr double scale_of_tinted = 8 / least_radius;
+
+bool tinted(const Mesh& mesh) { return !mesh.colors.empty() || !mesh.alphas.empty(); }
+
 // Gives each mesh vertices near the scale of the world, by powers of two: POV-Ray applies some of
 // its tolerances, and float32, in the mesh's own space.
 void rescale_meshes(Scene& scene, double factor) {
     std::vector<double> largest = largest_scales(scene);
     for (std::size_t k = 0; k < scene.meshes.size(); ++k) {
-        const double size = largest[k] * factor;
+        const double size = largest[k] * factor * (tinted(scene.meshes[k]) ? scale_of_tinted : 1);
         largest[k] = size > 0 ? std::exp2(std::round(std::log2(size))) : 1;
         // Hostile transforms flatten a mesh that is far larger than they make it.
         if (!(largest[k] > 1 / most && largest[k] < most &&

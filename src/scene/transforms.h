@@ -15,8 +15,8 @@ inline constexpr double least_determinant = 1e-90;
 /// Of a transform's numbers, for the same reason.
 inline constexpr double largest_in_transform = 1e30;
 
-/// Radii of what is looked at: that far from the origin float32 begins to suffer.
-inline constexpr double far_away = 64;
+/// Radii of what is looked at: from there on float32 loses more than it must.
+inline constexpr double far_away = 1;
 
 inline bool finite(const Matrix& transform) {
     for (int row = 0; row < 4; ++row)

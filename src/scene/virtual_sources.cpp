@@ -1,4 +1,6 @@
 // Where virtual sources stand. The tracer and the exporter both call this and nothing else.
+#include "scene/tolerances.h"
+
 #include "penumbra/light_model.h"
 #include "penumbra/scene.h"
 
@@ -11,8 +13,8 @@ namespace penumbra {
 namespace {
 
 // POV-Ray's parallel lights end at the plane through their location, so a directional light stands
-// far outside of a normalised scene (radius below 16, less than 1024 from the origin).
-constexpr double directional_distance = 65536;
+// far outside of a normalised scene, whose coordinates are below 4 least_radius.
+constexpr double directional_distance = 8192 * least_radius;
 
 std::vector<Vec3> axes_displacements(double delta) {
     return {{0, 0, 0},      {delta, 0, 0}, {-delta, 0, 0}, {0, delta, 0},

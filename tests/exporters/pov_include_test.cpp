@@ -228,11 +228,11 @@ TEST_CASE("an included model can be placed in its own units") {
     Scene scene = things();
     scene.planes.clear();
     Matrix place;
-    place.setScale(64.0);
+    place.setScale(1024.0);
     place[3][0] = 65536;
     for (Instance& instance : scene.instances) instance.transform *= place;
     scene.spheres[0].center = scene.spheres[0].center * place;
-    scene.spheres[0].radius *= 64;
+    scene.spheres[0].radius *= 1024;
     scene.materials.back().pattern = {};
     for (Light& light : scene.lights) light.position = light.position * place;
     scene.cameras[0].position = scene.cameras[0].position * place;

@@ -164,6 +164,15 @@ TEST_CASE("cases, show one side of a facet, and coloured light from behind") {
     CHECK(c.x > 2 * c.y);
 }
 
+TEST_CASE("cases, keep what is small in a large scene") {
+    if (missing()) PENUMBRA_SKIP(not_here);
+    // Beside a plate of 4 mm; and on a see-through sticker 1 mm before a white wall.
+    for (const char* plate : {"tolerance/prod_1m.glb", "tolerance/prod_100m.glb"})
+        CHECK(at(picture(plate), 0.59, 0.65).x < 0.15F);
+    for (const char* sticker : {"tolerance/decal_10m_1mm.glb", "tolerance/decal_200m_1mm.glb"})
+        CHECK(at(picture(sticker), 0.475, 0.667).x > 0.8F);
+}
+
 TEST_CASE("cases, show the same gold in three spellings") {
     if (missing()) PENUMBRA_SKIP(not_here);
     const Image image = picture("specular/46_gold-metal-vs-ior0-vs-ior1000.gltf");

@@ -81,8 +81,8 @@ TEST_CASE("Facets back to back, are moved by far less than a pixel") {
     Scene scene = two_colors();
     lift_back_to_back_facets(scene);
     const Bounds box = bounds(scene);
-    CHECK(box.max.z > 1e-5);
-    CHECK(box.max.z < 5e-5);
+    CHECK(box.max.z > 1e-6);
+    CHECK(box.max.z < 1e-5);
     CHECK(box.min.z == -box.max.z);
 }
 

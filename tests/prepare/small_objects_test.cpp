@@ -5,8 +5,6 @@
 
 #include "penumbra/prepare.h"
 
-#include <catch2/catch_test_macros.hpp>
-
 using namespace penumbra;
 
 namespace {

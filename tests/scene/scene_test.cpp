@@ -43,12 +43,12 @@ TEST_CASE("bounds, of nothing are empty") {
     CHECK(bounds(test::empty_scene()).radius() == 0);
 }
 
-TEST_CASE("normalise, brings the radius to at least 8 and below 16 by a power of two") {
+TEST_CASE("normalise, brings the radius to at least 128 and below 256 by a power of two") {
     const double radius = GENERATE(1e-4, 0.06, 1.0, 4.9, 77.0, 3e5);
     const NormalisedScene n = normalise(one_sphere(radius), {});
     const double scaled = bounds(n.scene).radius();
-    CHECK(scaled >= 8);
-    CHECK(scaled < 16);
+    CHECK(scaled >= 128);
+    CHECK(scaled < 256);
     CHECK(std::exp2(std::round(std::log2(n.factor))) == n.factor);
     CHECK(n.scene.spheres[0].radius == radius * n.factor);
     CHECK(n.offset == Vec3(0));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "prepare/surfaces/mesh_corners.h"
+#include "scene/tolerances.h"
 
 #include "penumbra/scene.h"
 
@@ -13,12 +14,13 @@
 
 namespace penumbra {
 
-/// Facets whose planes differ by no more lie in one plane: a few times what float32 leaves open in
-/// a scene of this radius.
-inline constexpr double in_one_plane = 2e-5;
+/// Facets whose planes differ by no more lie in one plane: a few times what float32 leaves open, and
+/// more than POV-Ray's least distance, within which a ray meets one of two at most.
+inline constexpr double in_one_plane = 20 * coordinate_rounding;
+static_assert(in_one_plane > least_distance);
 
 /// What overlaps by less does not count; a pixel is some ten times wider.
-inline constexpr double least_overlap = 5e-4;
+inline constexpr double least_overlap = 500 * coordinate_rounding;
 
 struct WorldFacet {
     std::array<Vec3, 3> corners = {};

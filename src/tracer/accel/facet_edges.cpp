@@ -1,4 +1,5 @@
 // Which of the facets that meet in an edge a ray hits.
+#include "scene/tolerances.h"
 #include "tracer/accel/embree.h"
 #include "tracer/accel/facets.h"
 
@@ -9,7 +10,7 @@
 namespace penumbra {
 
 // How far beside the ray a facet beyond the edge is looked for: where float32 tells both apart.
-constexpr double least_shift = 4e-6;
+constexpr double least_shift = 4 * coordinate_rounding;
 
 namespace {
 

@@ -12,9 +12,9 @@ namespace penumbra {
 
 namespace {
 
-// Below this angle to its facet a shadow ray may find that facet again: float32 rounds the start
-// point of a normalised scene by up to 1e-6, and shadow_margin is 1e-3.
-constexpr double grazing_sine = 4e-3;
+// Below this angle to its facet a shadow ray may find that facet again, as float32 rounds its start
+// point; four times that angle is on the safe side.
+constexpr double grazing_sine = 4 * coordinate_rounding / shadow_margin;
 
 struct Width8 {
     using RayHits = RTCRayHit8;
@@ -132,7 +132,7 @@ bool FacetAccel::exact_blocked(const Vec3& origin, const Vec3& direction, double
 bool FacetAccel::translucent(const Vec3& origin, const Vec3& direction, double nearest,
                              double farthest, Hit& hit) const {
     if (!translucent_) return false;
-    const auto from = float(std::max(0.0, nearest - 1e-4));
+    const auto from = float(std::max(0.0, nearest - 100 * coordinate_rounding));
     return walk(origin, direction, from, farthest, translucent_mask, [&](const Hit& found) {
         if (!(found.t > nearest && found.t < farthest)) return false;
         hit = found;

@@ -1,5 +1,6 @@
 #include "tracer/prepared/scene_boxes.h"
 
+#include "scene/tolerances.h"
 #include "scene/transforms.h"
 
 #include "penumbra/scene.h"
@@ -14,7 +15,7 @@ namespace {
 
 constexpr std::size_t most_boxes = 1 << 16;
 constexpr std::size_t least_facets = 16;  // in one box
-constexpr double padding = 1e-5;          // float32 rounding of a normalised scene's vertices
+constexpr double padding = 10 * coordinate_rounding;
 
 Bounds padded(Bounds box) {
     box.min -= Vec3(padding);

@@ -161,7 +161,7 @@ light_group {
   light_source { <3, 5, 4.25>, rgb 0.114285715 fade_distance 10 fade_power 2 }
   light_source { <3, 5, 3.75>, rgb 0.114285715 fade_distance 10 fade_power 2 }
   // sun: directional light
-  light_source { <0, 65536, 0>, rgb 1 parallel point_at <0, 0, 0> }
+  light_source { <0, 1048576, 0>, rgb 1 parallel point_at <0, 0, 0> }
   // spot light
   light_source { <0, 8, 0>, rgb <1, 0.5, 0.25> spotlight radius 20 falloff 29.999999999999996 tightness 0 point_at <0, 7, 0> }
 

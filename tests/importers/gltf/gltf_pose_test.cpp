@@ -48,10 +48,15 @@ void check_near(const Vec3f& a, const Vec3f& b) {
     CHECK((a - b).length() <= 1e-5F);
 }
 
-const Mesh& posed_mesh(const Scene& scene) {
+// With its vertices in the world.
+Mesh posed_mesh(const Scene& scene) {
     REQUIRE(scene.instances.size() == 1);
-    CHECK(scene.instances[0].transform == Matrix());
-    return scene.meshes.at(scene.instances[0].mesh);
+    const Matrix& place = scene.instances[0].transform;
+    const Vec3 move(place[3][0], place[3][1], place[3][2]);
+    CHECK(place == Matrix().setTranslation(move));
+    Mesh mesh = scene.meshes.at(scene.instances[0].mesh);
+    for (Vec3f& p : mesh.positions) p = Vec3f(Vec3(p) + move);
+    return mesh;
 }
 
 }  // namespace

@@ -156,9 +156,10 @@ TEST_CASE("glTF, flattens what a scale of zero flattens") {
     gltf.root["nodes"][0].update({{"scale", {2, 2, 0}}, {"translation", {0, 0, 3}}});
     const Scene scene = read(gltf).scene;
     const Instance& instance = scene.instances.at(0);
-    CHECK(instance.transform == Matrix());
+    // Counted from their middle, as that is farther from the origin than they are large.
+    CHECK(instance.transform == Matrix().setTranslation(Vec3(1, 1, 3)));
     CHECK(scene.meshes.at(instance.mesh).positions ==
-          std::vector<Vec3f>{{0, 0, 3}, {2, 0, 3}, {0, 2, 3}});
+          std::vector<Vec3f>{{-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}});
 
     gltf.root["nodes"][0]["scale"] = {2, 0, 0};
     const Imported nothing = read(gltf);
