@@ -46,8 +46,8 @@ std::string placement(const Matrix& m) {
     if (linear == Matrix()) return move == Vec3(0) ? "" : " translate " + sdl::vector(move);
     std::string text = "\n    matrix <";
     for (int row = 0; row < 4; ++row)
-        text += fmt::format("{}{}, {}, {}", row == 0 ? "" : ",\n            ",
-                            number(m[row][0]), number(m[row][1]), number(m[row][2]));
+        text += fmt::format("{}{}, {}, {}", row == 0 ? "" : ",\n            ", number(m[row][0]),
+                            number(m[row][1]), number(m[row][2]));
     return text + ">\n   ";
 }
 

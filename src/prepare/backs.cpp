@@ -110,9 +110,10 @@ void lift(Mesh& mesh, const Matrix& to_world, const std::set<Index>& facets, dou
 std::string what_shows(const Backs& backs) {
     const char* const why = "POV-Ray tells the sides of smooth facets by their normals";
     if (!backs.hidden) return fmt::format("the backs of its facets are shown: {}", why);
-    return fmt::format("its {} where they are seen at less than {} degree{}: {}",
-                       backs.from > 0 ? "backs are shown" : "fronts are left out", backs.lean,
-                       backs.lean == 1 ? "" : "s", why);
+    const char* const what = backs.from > 0
+                                 ? "its backs are shown where they are seen at less than"
+                                 : "its fronts are left out where they are seen at less than";
+    return fmt::format("{} {} degree{}: {}", what, backs.lean, backs.lean == 1 ? "" : "s", why);
 }
 
 }  // namespace

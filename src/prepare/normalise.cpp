@@ -62,9 +62,10 @@ Vec3f own_origin(const Mesh& mesh, double scale, double radius) {
     return origin;
 }
 
-// Where POV-Ray 3.7 mixes the textures of a facet's corners it takes a determinant for 0 whose square
-// is below 1e-10, in the mesh's own units (source/backend/shape/triangle.cpp, Calculate_Smooth_T). At
-// a radius of 8 that is far above float32's rounding and far below all but the smallest facets.
+// Where POV-Ray 3.7 mixes the textures of a facet's corners it takes a determinant for 0 whose
+// square is below 1e-10, in the mesh's own units (source/backend/shape/triangle.cpp,
+// Calculate_Smooth_T). At a radius of 8 that is far above float32's rounding and far below all but
+// the smallest facets.
 constexpr double scale_of_tinted = 8 / least_radius;
 
 bool tinted(const Mesh& mesh) { return !mesh.colors.empty() || !mesh.alphas.empty(); }

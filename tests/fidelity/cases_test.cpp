@@ -24,8 +24,8 @@ constexpr const char* not_here = "the cases are not here";
 constexpr int width = 160, height = 120;
 
 Imported load(const std::string& file, ModelOptions model = {}) {
-    Imported imported = load_scene({cases() / file}, {.settings = {"render.size=[160,120]"},
-                                                      .model = std::move(model)});
+    Imported imported = load_scene(
+        {cases() / file}, {.settings = {"render.size=[160,120]"}, .model = std::move(model)});
     test::meter(imported);
     return imported;
 }

@@ -11,9 +11,7 @@ namespace {
 
 constexpr int width = 160, height = 120;
 
-Losses losses_of(const Scene& scene) {
-    return losses_by_size(scene, bounds(scene), width, height);
-}
+Losses losses_of(const Scene& scene) { return losses_by_size(scene, bounds(scene), width, height); }
 
 // Ground of that side, and a camera that sees one unit around the origin from near.
 Scene ground(float side) {

@@ -22,7 +22,8 @@ namespace {
 
 // Planes are sorted into cells of the space of their normals and distances. What may lie in one
 // plane with something beyond the border of its cell belongs to both cells. A scene reaches up to
-// 2 least_radius from its middle; normals of facets that are much larger than in_one_plane are as exact.
+// 2 least_radius from its middle; normals of facets that are much larger than in_one_plane are as
+// exact.
 constexpr double normal_cell = 2e-3, normal_margin = 2e-5;
 constexpr double distance_cell = least_radius / 400,
                  distance_margin = in_one_plane + 2 * least_radius * normal_margin;

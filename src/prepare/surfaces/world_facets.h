@@ -14,8 +14,8 @@
 
 namespace penumbra {
 
-/// Facets whose planes differ by no more lie in one plane: a few times what float32 leaves open, and
-/// more than POV-Ray's least distance, within which a ray meets one of two at most.
+/// Facets whose planes differ by no more lie in one plane: a few times what float32 leaves open,
+/// and more than POV-Ray's least distance, within which a ray meets one of two at most.
 inline constexpr double in_one_plane = 20 * coordinate_rounding;
 static_assert(in_one_plane > least_distance);
 
@@ -66,9 +66,9 @@ class WorldFacets {
     const Scene& scene_;
     Vec3 origin_ = Vec3(0);
     double factor_ = 1;
-    std::vector<Index> first_;                                 // and behind the last one
-    std::vector<bool> mirrored_;                               // of each instance
-    std::vector<Bounds> boxes_;                                // around the meshes
+    std::vector<Index> first_;    // and behind the last one
+    std::vector<bool> mirrored_;  // of each instance
+    std::vector<Bounds> boxes_;   // around the meshes
     // Of those that were asked:
     mutable std::vector<std::optional<MeshCorners>> corners_;
     mutable std::vector<std::optional<bool>> bodies_;

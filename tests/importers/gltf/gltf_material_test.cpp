@@ -100,11 +100,10 @@ TEST_CASE("glTF materials, blend or cut by the alpha of the base colour") {
 }
 
 TEST_CASE("glTF materials, name every feature that is left aside") {
-    const json extensions = {
-        {"KHR_materials_sheen", {{"sheenColorFactor", {1, 0, 0}}}},
-        {"KHR_materials_anisotropy", {{"anisotropyStrength", 0.5}}},
-        {"KHR_materials_iridescence", {{"iridescenceFactor", 1}}},
-        {"KHR_materials_dispersion", {{"dispersion", 0.1}}}};
+    const json extensions = {{"KHR_materials_sheen", {{"sheenColorFactor", {1, 0, 0}}}},
+                             {"KHR_materials_anisotropy", {{"anisotropyStrength", 0.5}}},
+                             {"KHR_materials_iridescence", {{"iridescenceFactor", 1}}},
+                             {"KHR_materials_dispersion", {{"dispersion", 0.1}}}};
     Gltf gltf = with_material({{"occlusionTexture", {{"index", 0}}}, {"extensions", extensions}});
     gltf.add("images", picture({1, 0.5F, 0}));
     gltf.add("textures", {{"source", 0}});
