@@ -115,7 +115,8 @@ struct Material;
 /// but for Fresnel's term.
 struct Blend {
     ImageMap map = {};
-    std::vector<Material> other = {};  ///< one, without a Blend and an AlphaMap
+    // Without an initializer, as Material is incomplete here.
+    std::vector<Material> other;  ///< one, without a Blend and an AlphaMap
 };
 
 /// Light along a path of length x inside of the surface is multiplied by color^(x / distance).

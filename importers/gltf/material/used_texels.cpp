@@ -40,7 +40,7 @@ struct Range {
 Span within(const Corners& facet, double low, double high) {
     Span span;
     for (std::size_t i = 0; i < 3; ++i) {
-        const Vec2 a = facet[i], b = facet[(i + 1) % 3];
+        const Vec2 &a = facet[i], &b = facet[(i + 1) % 3];
         if (a.y >= low && a.y <= high) span.extend(a.x);
         for (const double y : {low, high})
             if ((a.y < y) != (b.y < y)) span.extend(a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y));

@@ -18,6 +18,7 @@
 #include <map>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 
 namespace penumbra {
 
@@ -128,7 +129,8 @@ Count lift_all(Scene& scene, const ByInstance& levelled, double step) {
             copied += facets;
             uses[mesh] -= instances.size();
             mesh = Index(scene.meshes.size());
-            scene.meshes.push_back(Mesh(scene.meshes[kind.mesh]));
+            Mesh copy = scene.meshes[kind.mesh];
+            scene.meshes.push_back(std::move(copy));
             for (const Index i : instances) scene.instances[i].mesh = mesh;
         }
         lift(scene.meshes[mesh], scene.instances[instances[0]].transform, kind.facets, step);
