@@ -5,6 +5,7 @@
 #include "importers/shared/merge.h"
 #include "importers/sidecar/sidecar.h"
 #include "prepare/complete.h"
+#include "prepare/same_corners.h"
 #include "prepare/small_objects.h"
 #include "scene/transforms.h"
 
@@ -162,6 +163,23 @@ void take_shape(const Camera& camera, RenderOptions& render) {
     render.height = std::max(1, int(std::lround(height)));
 }
 
+void separate_coincident_facets(Imported& result) {
+    Scene& scene = result.scene;
+    if (!may_coincide(scene)) return;
+    if (const std::size_t count = lift_back_to_back_facets(scene); count > 0)
+        result.losses.push_back(
+            {Loss::approximated, "facets",
+             fmt::format("{} that lie back to back are moved apart by a little, "
+                         "each towards the side that it shows",
+                         count)});
+    if (const std::size_t count = drop_coincident_facets(scene); count > 0)
+        result.losses.push_back(
+            {Loss::approximated, "facets",
+             fmt::format("{} that lie exactly on others are left out: which of them "
+                         "shows would be a matter of rounding",
+                         count)});
+}
+
 // Returns the bounds of what they lay.
 Bounds lay_layers(const Request& request, const LoadOptions& options, Imported& result) {
     Scene& scene = result.scene;
@@ -188,18 +206,7 @@ Bounds lay_layers(const Request& request, const LoadOptions& options, Imported& 
         [&](const Layer& layer) { lay_camera(layer, scene, aims, box, aspect); });
     if (!sized && scene.camera != no_index) take_shape(scene.cameras[scene.camera], result.render);
     complete(scene, aspect);
-    if (const std::size_t count = lift_back_to_back_facets(scene); count > 0)
-        result.losses.push_back(
-            {Loss::approximated, "facets",
-             fmt::format("{} that lie back to back are moved apart by a little, "
-                         "each towards the side that it shows",
-                         count)});
-    if (const std::size_t count = drop_coincident_facets(scene); count > 0)
-        result.losses.push_back(
-            {Loss::approximated, "facets",
-             fmt::format("{} that lie exactly on others are left out: which of them "
-                         "shows would be a matter of rounding",
-                         count)});
+    separate_coincident_facets(result);
     const Losses parted = part_surfaces(scene);
     result.losses.insert(result.losses.end(), parted.begin(), parted.end());
     check_used(made, scene);

@@ -1,6 +1,7 @@
 // What one-sided facets need before a scene can be shown: those that lie back to back, and a word
 // about the backs that cannot be hidden.
 #include "prepare/body.h"
+#include "prepare/same_corners.h"
 #include "prepare/scale.h"
 #include "scene/sides.h"
 #include "scene/tolerances.h"
@@ -25,24 +26,6 @@ namespace {
 
 // ---- back to back ------------------------------------------------------------------------------
 
-// A one-sided facet of an instance. A facet that lies on another has the same `corners`, which are
-// a sum over its corners in the world; `turn` is the same for those that are shown on one side.
-struct OneSided {
-    std::uint64_t corners = 0;
-    Index instance = 0, facet = 0;
-    bool turn = false;
-};
-
-std::array<Vec3f, 3> corners_of(const Scene& scene, const Instance& instance, Index facet,
-                                const Vec3& origin) {
-    const Mesh& mesh = scene.meshes[instance.mesh];
-    std::array<Vec3f, 3> places;
-    for (std::size_t i = 0; i < 3; ++i)
-        places[i] =
-            Vec3f(Vec3(mesh.positions[mesh.triangles[facet][i]]) * instance.transform - origin);
-    return places;
-}
-
 bool before(const Vec3f& p, const Vec3f& q) {
     return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
 }
@@ -58,24 +41,23 @@ bool sort(std::array<Vec3f, 3>& corners) {
     return odd;
 }
 
-std::vector<OneSided> one_sided_facets(const Scene& scene, const Vec3& origin) {
-    std::vector<OneSided> found;
+// Of facets with the same corners it is the same for those that are shown on one side.
+bool turn_of(const World& world, const Placed& placed) {
+    auto places = corners(world, placed);
+    return sort(places) != (world.scene.instances[placed.instance].transform.determinant() < 0);
+}
+
+// Those that show one side; of scenes with more than most_facets, only what is shown once.
+std::vector<Index> one_sided_instances(const Scene& scene) {
+    std::vector<std::size_t> uses(scene.meshes.size(), 0);
+    for (const Instance& i : scene.instances) ++uses[i.mesh];
+    const bool all = facet_count(scene) <= most_facets;
+    std::vector<Index> found;
     for (Index i = 0; i < scene.instances.size(); ++i) {
-        const Instance& instance = scene.instances[i];
-        const Mesh& mesh = scene.meshes[instance.mesh];
-        if (scene.materials[mesh.material].sides == Sides::both) continue;
-        const bool mirrors = instance.transform.determinant() < 0;
-        for (Index k = 0; k < mesh.triangles.size(); ++k) {
-            auto corners = corners_of(scene, instance, k, origin);
-            const bool odd = sort(corners);
-            std::uint64_t sum = 0;
-            for (const Vec3f& p : corners) sum += hash_of_point(p);
-            found.push_back({sum, i, k, odd != mirrors});
-        }
+        const Index mesh = scene.instances[i].mesh;
+        const bool one_sided = scene.materials[scene.meshes[mesh].material].sides == Sides::front;
+        if (one_sided && (all || uses[mesh] == 1)) found.push_back(i);
     }
-    std::ranges::sort(found, [](const OneSided& a, const OneSided& b) {
-        return std::tie(a.corners, a.instance, a.facet) < std::tie(b.corners, b.instance, b.facet);
-    });
     return found;
 }
 
@@ -119,23 +101,17 @@ std::string what_shows(const Backs& backs) {
 }  // namespace
 
 std::size_t lift_back_to_back_facets(Scene& scene) {
-    const Bounds box = bounds(scene);
-    const Vec3 origin = local_origin(box);
-    const std::vector<OneSided> facets = one_sided_facets(scene, origin);
+    const std::vector<Index> asked = one_sided_instances(scene);
+    if (asked.empty()) return 0;
+    const World world{scene};
+    const std::vector<Placed> facets = suspects(world, asked);
     std::map<Index, std::pair<Index, std::set<Index>>> lifted;  // by mesh: an instance, facets
-    const auto same_place = [&](const OneSided& a, const OneSided& b) {
-        auto p = corners_of(scene, scene.instances[a.instance], a.facet, origin);
-        auto q = corners_of(scene, scene.instances[b.instance], b.facet, origin);
-        sort(p);
-        sort(q);
-        return p == q;
-    };
     for (std::size_t i = 1, first = 0; i < facets.size(); ++i) {
-        if (facets[i].corners != facets[first].corners) first = i;
-        if (first == i || facets[i].turn == facets[first].turn ||
-            !same_place(facets[first], facets[i]))
+        if (facets[i].hash != facets[first].hash) first = i;
+        if (first == i || turn_of(world, facets[i]) == turn_of(world, facets[first]) ||
+            !same_corners(corners(world, facets[first]), corners(world, facets[i])))
             continue;
-        for (const OneSided& one : {facets[first], facets[i]}) {
+        for (const Placed& one : {facets[first], facets[i]}) {
             auto& [instance, of_mesh] = lifted[scene.instances[one.instance].mesh];
             instance = one.instance;
             of_mesh.insert(one.facet);
@@ -143,7 +119,7 @@ std::size_t lift_back_to_back_facets(Scene& scene) {
     }
     // Twice that lies between both: more than POV-Ray's least distance, and far more than float32's
     // rounding.
-    const double height = 4 * least_distance / normalising_factor(box);
+    const double height = 4 * least_distance / normalising_factor(bounds(scene));
     std::size_t count = 0;
     for (const auto& [mesh, of_mesh] : lifted) {
         lift(scene.meshes[mesh], scene.instances[of_mesh.first].transform, of_mesh.second, height);

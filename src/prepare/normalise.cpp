@@ -53,9 +53,7 @@ std::vector<double> largest_scales(const Scene& scene) {
 Vec3f own_origin(const Mesh& mesh, double scale, double radius) {
     Vec3f origin(0);
     if (extent_of(mesh) * scale <= far_away * radius) return origin;
-    Bounds box;
-    for (const auto& triangle : mesh.triangles)
-        for (const Index corner : triangle) box.extend(Vec3(mesh.positions[corner]));
+    const Bounds box = box_around_facets(mesh);
     for (int axis = 0; axis < 3; ++axis)
         if (std::abs(box.center()[axis]) * scale > far_away * radius)
             origin[axis] = float(box.center()[axis]);

@@ -27,13 +27,6 @@ struct Object {
     double thickness;  // of its shortest one
 };
 
-Bounds corners_of(const Mesh& mesh) {
-    Bounds box;
-    for (const auto& triangle : mesh.triangles)
-        for (const Index corner : triangle) box.extend(Vec3(mesh.positions[corner]));
-    return box;
-}
-
 Object object_of(const Instance& instance, const Mesh& mesh, const Bounds& box) {
     const auto& m = instance.transform;
     Vec3 sides = box.max - box.min;
@@ -53,7 +46,7 @@ std::vector<Object> objects_of(const Scene& scene) {
     for (const Instance& instance : scene.instances) {
         const Mesh& mesh = scene.meshes[instance.mesh];
         auto& box = boxes[instance.mesh];
-        if (!box) box = corners_of(mesh);
+        if (!box) box = box_around_facets(mesh);
         // A point has nothing to lose.
         if (box->radius() > 0) objects.push_back(object_of(instance, mesh, *box));
     }

@@ -4,6 +4,8 @@
 #include "penumbra/scene.h"
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 
 namespace penumbra {
 
@@ -14,20 +16,44 @@ void Bounds::extend(const Vec3& p) {
     }
 }
 
+Bounds box_around(std::span<const Vec3f> points, std::span<const char> chosen) {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    Vec3f low(infinity), high(-infinity);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (!chosen.empty() && chosen[i] == 0) continue;
+        for (int axis = 0; axis < 3; ++axis) {
+            low[axis] = std::min(low[axis], points[i][axis]);
+            high[axis] = std::max(high[axis], points[i][axis]);
+        }
+    }
+    return low.x <= high.x ? Bounds{.min = Vec3(low), .max = Vec3(high)} : Bounds{};
+}
+
 namespace {
 
 // The vertices that facets use, and the box around them: a file may hold others.
 struct Corners {
-    std::vector<bool> used = {};
+    std::vector<char> used = {};
     Bounds box = {};
 
-    explicit Corners(const Mesh& mesh) : used(mesh.positions.size(), false) {
+    explicit Corners(const Mesh& mesh) : used(mesh.positions.size(), 0) {
         for (const auto& triangle : mesh.triangles)
-            for (const Index corner : triangle) used[corner] = true;
-        for (std::size_t i = 0; i < used.size(); ++i)
-            if (used[i]) box.extend(Vec3(mesh.positions[i]));
+            for (const Index corner : triangle) used[corner] = 1;
+        box = box_around(mesh.positions, used);
     }
 };
+
+}  // namespace
+
+Bounds box_around_facets(const Mesh& mesh) { return Corners(mesh).box; }
+
+namespace {
+
+// Is a box that is transformed as tight as the box around what is transformed?
+bool keeps_axes(const Matrix& m) {
+    return m[0][1] == 0 && m[0][2] == 0 && m[1][0] == 0 && m[1][2] == 0 && m[2][0] == 0 &&
+           m[2][1] == 0;
+}
 
 bool contains(const Bounds& box, const Bounds& other) {
     for (int axis = 0; axis < 3; ++axis)
@@ -64,9 +90,14 @@ Bounds bounds(const Scene& scene) {
         const Instance& instance = scene.instances[index];
         const Mesh& mesh = scene.meshes[instance.mesh];
         if (mesh.triangles.empty() || contains(box, boxes[index])) continue;
+        if (keeps_axes(instance.transform)) {
+            box.extend(boxes[index].min);
+            box.extend(boxes[index].max);
+            continue;
+        }
         const Corners& known = *corners[instance.mesh];
         for (std::size_t i = 0; i < known.used.size(); ++i)
-            if (known.used[i]) box.extend(Vec3(mesh.positions[i]) * instance.transform);
+            if (known.used[i] != 0) box.extend(moved(mesh.positions[i], instance.transform));
     }
     for (const Sphere& sphere : scene.spheres) {
         box.extend(sphere.center - Vec3(sphere.radius));

@@ -22,30 +22,43 @@ bool tinted(const Mesh& mesh, const Material& material) {
                      }));
 }
 
+// By the matrix of normals, if there is one.
+Vec3 turned(const std::optional<Matrix>& normals, const Vec3& direction) {
+    if (!normals) return direction;
+    Vec3 result;
+    normals->multDirMatrix(direction, result);
+    return result;
+}
+
 // Whole degrees by which the normals of a facet lean away from it.
 int lean_of(const Mesh& mesh, const std::array<Index, 3>& corners, const Vec3& front,
-            const Matrix& normals) {
+            const std::optional<Matrix>& normals) {
     double cosine = 1;
     for (const Index corner : corners) {
-        Vec3 normal;
-        normals.multDirMatrix(Vec3(mesh.normals[corner]), normal);
-        cosine = std::min(cosine, normal.normalized().dot(front));
+        const Vec3 normal = turned(normals, Vec3(mesh.normals[corner]));
+        cosine = std::min(cosine, normal.dot(front) / normal.length());
     }
-    // A hundredth is rounding.
-    return cosine <= 0 ? 90 : int(std::ceil(degrees(std::acos(cosine)) - 0.01));
+    static const std::array<double, 91> cosines = [] {
+        std::array<double, 91> table{};
+        for (int i = 0; i < 90; ++i)
+            table[std::size_t(i)] = std::cos(radians(i + 0.01));  // rounding
+        return table;
+    }();
+    const auto lean = std::ranges::partition_point(cosines, [&](double c) { return c > cosine; });
+    return lean == cosines.end() ? 90 : int(lean - cosines.begin());
 }
 
 // The same of a mesh, but for a thousandth of its area: slivers have normals at random.
 int lean_of(const Mesh& mesh, const Matrix& to_world) {
     std::array<double, 91> areas{};
     double all = 0;
-    const Matrix normals = to_world.inverse().transposed();
+    std::optional<Matrix> normals;
+    if (to_world != Matrix()) normals = to_world.inverse().transposed();
     for (const auto& corners : mesh.triangles) {
         const Vec3 a(mesh.positions[corners[0]]);
-        Vec3 front;
-        normals.multDirMatrix(
-            (Vec3(mesh.positions[corners[1]]) - a).cross(Vec3(mesh.positions[corners[2]]) - a),
-            front);
+        const Vec3 front = turned(
+            normals,
+            (Vec3(mesh.positions[corners[1]]) - a).cross(Vec3(mesh.positions[corners[2]]) - a));
         const double area = front.length();
         if (!(area > 0)) continue;
         all += area;

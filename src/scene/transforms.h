@@ -5,6 +5,7 @@
 #include "penumbra/scene.h"
 
 #include <cmath>
+#include <span>
 
 namespace penumbra {
 
@@ -17,6 +18,21 @@ inline constexpr double largest_in_transform = 1e30;
 
 /// Radii of what is looked at: from there on float32 loses more than it must.
 inline constexpr double far_away = 1;
+
+/// p * m, without the division that a projection would need.
+inline Vec3 moved(const Vec3f& p, const Matrix& m) {
+    Vec3 result;
+    for (int column = 0; column < 3; ++column)
+        result[column] = double(p.x) * m[0][column] + double(p.y) * m[1][column] +
+                         double(p.z) * m[2][column] + m[3][column];
+    return result;
+}
+
+/// Around all of the points, or around those whose entry of `chosen` is not 0.
+Bounds box_around(std::span<const Vec3f> points, std::span<const char> chosen = {});
+
+/// Around the vertices that facets use. Precondition: their indices are in range.
+Bounds box_around_facets(const Mesh& mesh);
 
 inline bool finite(const Matrix& transform) {
     for (int row = 0; row < 4; ++row)

@@ -3,6 +3,7 @@
 #include "base/hash.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "prepare/sieve.h"
 #include "prepare/surfaces/facet_overlaps.h"
 
 #include <tbb/parallel_sort.h>
@@ -60,6 +61,18 @@ void each_cell(Vec3 normal, double distance, Visit visit) {
     }
 }
 
+// What belongs to a plane of the scene as it does to a facet.
+WorldFacet facet_in(const Plane& plane, const WorldFacets& facets) {
+    return {.corners = {facets.place(plane.point)}, .normal = plane.normal.normalized()};
+}
+
+// Calls visit(hash) for the cells of a plane of the scene.
+template <class Visit>
+void each_cell(const Plane& plane, const WorldFacets& facets, Visit visit) {
+    const WorldFacet in_it = facet_in(plane, facets);
+    each_cell(in_it.normal, in_it.normal.dot(in_it.corners[0]), visit);
+}
+
 struct InCell {
     std::uint64_t cell = 0;
     Index facet = 0;
@@ -67,6 +80,39 @@ struct InCell {
 };
 
 using Run = std::span<const InCell>;  // of one cell
+
+bool share_corner(const WorldFacets& facets, Index instance, Index a, Index b) {
+    const auto& triangles = facets.mesh_of(instance).triangles;
+    const Index first = facets.first_of(instance);
+    for (const Index corner : triangles[a - first])
+        for (const Index other : triangles[b - first])
+            if (corner == other) return true;
+    return false;
+}
+
+// Takes out what is alone in its cell, but for what follows it in the mesh and hangs together with
+// it: most of a curved mesh. What may lie in a plane of the scene stays.
+void drop_what_is_alone(const WorldFacets& facets, std::vector<std::vector<InCell>>& parts) {
+    std::size_t count = 0;
+    for (const auto& part : parts) count += part.size();
+    Sieve seen(count), twice(count);
+    for (const Plane& plane : facets.scene().planes)
+        each_cell(plane, facets, [&](std::uint64_t cell) { twice.insert(cell); });
+    InCell last = {.facet = no_index};
+    Index instance = 0;
+    for (const auto& part : parts)
+        for (const InCell& in : part) {
+            while (in.facet >= facets.first_of(instance + 1)) ++instance;
+            const bool follows = last.facet != no_index && in.cell == last.cell &&
+                                 in.facet == last.facet + 1 &&
+                                 last.facet >= facets.first_of(instance) &&
+                                 share_corner(facets, instance, last.facet, in.facet);
+            if (!follows && seen.insert(in.cell)) twice.insert(in.cell);
+            last = in;
+        }
+    for (auto& part : parts)
+        std::erase_if(part, [&](const InCell& in) { return !twice.contains(in.cell); });
+}
 
 std::vector<InCell> facets_by_cell(const WorldFacets& facets) {
     constexpr std::size_t block = std::size_t(1) << 15;
@@ -83,6 +129,7 @@ std::vector<InCell> facets_by_cell(const WorldFacets& facets) {
                       [&](std::uint64_t cell) { part.push_back({cell, number}); });
         }
     });
+    drop_what_is_alone(facets, parts);
     std::vector<InCell> all;
     std::size_t count = 0;
     for (const auto& part : parts) count += part.size();
@@ -260,11 +307,6 @@ class Overlaps {
     std::vector<GroupedBox> boxes_;
 };
 
-// What belongs to a plane of the scene as it does to a facet.
-WorldFacet facet_in(const Plane& plane, const WorldFacets& facets) {
-    return {.corners = {facets.place(plane.point)}, .normal = plane.normal.normalized()};
-}
-
 }  // namespace
 
 bool lies_on(const WorldFacets& facets, Index instance, Index other) {
@@ -281,6 +323,7 @@ CoplanarPatches coplanar_patches(const WorldFacets& facets) {
     const MemoryClaim claim(times(facets.count(), 2 * sizeof(InCell) + 3 * sizeof(AtVertex)),
                             "facets in one plane");
     const std::vector<InCell> all = facets_by_cell(facets);
+    if (all.empty()) return result;
     Sets patches(facets.count());
     std::vector<AtVertex> scratch;
     each_run(all, [&](Run run) { join_neighbours(facets, run, scratch, patches); });
@@ -288,9 +331,8 @@ CoplanarPatches coplanar_patches(const WorldFacets& facets) {
     each_run(all, [&](Run run) { overlaps.add(run); });
     for (const Plane& plane : facets.scene().planes) {
         const WorldFacet in_it = facet_in(plane, facets);
-        each_cell(in_it.normal, in_it.normal.dot(in_it.corners[0]), [&](std::uint64_t cell) {
-            const auto run = std::ranges::equal_range(all, cell, {}, &InCell::cell);
-            overlaps.add(plane, in_it, run);
+        each_cell(plane, facets, [&](std::uint64_t cell) {
+            overlaps.add(plane, in_it, std::ranges::equal_range(all, cell, {}, &InCell::cell));
         });
     }
     result.overlaps = overlaps.found();

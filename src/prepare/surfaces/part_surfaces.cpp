@@ -144,13 +144,13 @@ void say(Losses& losses, const char* place, std::size_t count, const std::string
         losses.push_back({Loss::approximated, place, fmt::format("{} {}", count, what), count});
 }
 
-void part_facets(Scene& scene, Losses& losses) {
-    const WorldFacets facets(scene);
+void part_facets(Scene& scene, const Bounds& box, Losses& losses) {
+    const WorldFacets facets(scene, box);
     const CoplanarPatches found = coplanar_patches(facets);
     if (found.overlaps.empty()) return;
     const ByInstance places = levelled(facets, found);
     const double step = layer / facets.factor();
-    center_meshes(scene, bounds(scene).radius());
+    center_meshes(scene, box.radius());
     const Count count = lift_all(scene, places, step);
     say(losses, "facets", count.lifted,
         fmt::format("that lie in one plane with others are lifted off it by {:.2g}: which of them "
@@ -165,7 +165,8 @@ void part_facets(Scene& scene, Losses& losses) {
 
 Losses part_surfaces(Scene& scene) {
     Losses losses;
-    const double factor = normalising_factor(bounds(scene));
+    const Bounds box = bounds(scene);
+    const double factor = normalising_factor(box);
     const PartedShapes shapes = part_coincident_shapes(scene, layer / factor, factor);
     say(losses, "spheres and planes", shapes.dropped,
         "that lie exactly on others are left out: which of them shows would be a matter of "
@@ -174,7 +175,7 @@ Losses part_surfaces(Scene& scene) {
         fmt::format("that lie exactly on others are lifted off them by {:.2g}: which of them shows "
                     "would be a matter of rounding",
                     layer / factor));
-    part_facets(scene, losses);
+    part_facets(scene, box, losses);
     return losses;
 }
 

@@ -2,15 +2,15 @@
 
 #include "prepare/body.h"
 #include "prepare/scale.h"
+#include "scene/transforms.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace penumbra {
 
-WorldFacets::WorldFacets(const Scene& scene)
+WorldFacets::WorldFacets(const Scene& scene, const Bounds& box)
     : scene_(scene), first_{0}, corners_(scene.meshes.size()), bodies_(scene.meshes.size()) {
-    const Bounds box = bounds(scene);
     if (!box.empty()) origin_ = box.center();
     factor_ = normalising_factor(box);
     std::vector<std::size_t> uses(scene.meshes.size(), 0);
@@ -20,12 +20,16 @@ WorldFacets::WorldFacets(const Scene& scene)
         const std::size_t facets = scene.meshes[instance.mesh].triangles.size();
         first_.push_back(first_.back() + Index(all || uses[instance.mesh] == 1 ? facets : 0));
     }
-    for (const Instance& instance : scene.instances)
+    for (const Instance& instance : scene.instances) {
         mirrored_.push_back(instance.transform.determinant() < 0);
-    for (const Mesh& mesh : scene.meshes) {
-        Bounds& around = boxes_.emplace_back();
-        for (const Vec3f& p : mesh.positions) around.extend(Vec3(p));
+        Matrix placed = instance.transform;
+        for (int column = 0; column < 3; ++column) {
+            placed[3][column] -= origin_[column];
+            for (int row = 0; row < 4; ++row) placed[row][column] *= factor_;
+        }
+        places_.push_back(placed);
     }
+    for (const Mesh& mesh : scene.meshes) boxes_.push_back(box_around(mesh.positions));
 }
 
 Index WorldFacets::instance_of(Index facet) const {
@@ -34,15 +38,15 @@ Index WorldFacets::instance_of(Index facet) const {
 
 std::optional<WorldFacet> WorldFacets::at(Index instance, Index facet) const {
     const Mesh& mesh = mesh_of(instance);
-    const Matrix& transform = scene_.instances[instance].transform;
     WorldFacet result;
     for (std::size_t i = 0; i < 3; ++i)
-        result.corners[i] = place(Vec3(mesh.positions[mesh.triangles[facet][i]]) * transform);
+        result.corners[i] = moved(mesh.positions[mesh.triangles[facet][i]], places_[instance]);
     const auto& [a, b, c] = result.corners;
     const Vec3 normal = (b - a).cross(c - a);
     const double area = normal.length();
-    const double longest = std::max({(b - a).length(), (c - a).length(), (c - b).length()});
-    if (!(area > longest * least_overlap) || !std::isfinite(area)) return {};
+    const double longest = std::max({(b - a).length2(), (c - a).length2(), (c - b).length2()});
+    if (!(area * area > longest * (least_overlap * least_overlap)) || !std::isfinite(area))
+        return {};
     // A transform that mirrors turns the winding over, not the front.
     result.normal = normal / (mirrored_[instance] ? -area : area);
     return result;

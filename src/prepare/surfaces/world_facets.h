@@ -30,10 +30,10 @@ struct WorldFacet {
     double height(const Vec3& p) const { return normal.dot(p - corners[0]); }
 };
 
-/// The Scene must outlive it, and keep its facets.
+/// The Scene must outlive it, and keep its facets. `box` is bounds(scene).
 class WorldFacets {
   public:
-    explicit WorldFacets(const Scene& scene);
+    WorldFacets(const Scene& scene, const Bounds& box);
 
     const Scene& scene() const { return scene_; }
     std::size_t count() const { return first_.back(); }
@@ -68,6 +68,7 @@ class WorldFacets {
     double factor_ = 1;
     std::vector<Index> first_;    // and behind the last one
     std::vector<bool> mirrored_;  // of each instance
+    std::vector<Matrix> places_;  // the same, to the units here
     std::vector<Bounds> boxes_;   // around the meshes
     // Of those that were asked:
     mutable std::vector<std::optional<MeshCorners>> corners_;

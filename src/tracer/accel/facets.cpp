@@ -12,9 +12,9 @@ namespace penumbra {
 
 namespace {
 
-// Below this angle to its facet a shadow ray may find that facet again, as float32 rounds its start
-// point; four times that angle is on the safe side.
-constexpr double grazing_sine = 4 * coordinate_rounding / shadow_margin;
+// Below this angle to its facet a shadow ray may find that facet again: float32 rounds its start
+// point, and as much the facet's distance from there.
+constexpr double grazing_sine = coordinate_rounding / shadow_margin;
 
 struct Width8 {
     using RayHits = RTCRayHit8;
@@ -262,16 +262,16 @@ void FacetAccel::block_packets(const ShadowRays& rays, std::span<const Index> as
         const std::size_t lanes = std::min(Width::size, asked.size() - first);
         for (std::size_t lane = 0; lane < Width::size; ++lane) {
             from[lane] = asked[std::min(first + lane, asked.size() - 1)];
-            valid[lane] = lane < lanes && rays.sin_to_facet[from[lane]] >= grazing_sine ? -1 : 0;
+            valid[lane] = lane < lanes ? -1 : 0;
         }
         gather(columns, from);
         embree::occluded(valid.data(), trees_.top(), query, packet);
         for (std::size_t lane = 0; lane < lanes; ++lane) {
             const std::size_t i = from[lane];
-            const bool blocked = valid[lane] != 0 ? packet.tfar[lane] < 0
-                                                  : exact_blocked(rays.origin[i], rays.direction[i],
-                                                                  rays.distance[i]);
-            if (blocked) visible[i] = 0;
+            if (packet.tfar[lane] >= 0) continue;
+            if (rays.sin_to_facet[i] >= grazing_sine ||
+                exact_blocked(rays.origin[i], rays.direction[i], rays.distance[i]))
+                visible[i] = 0;
         }
     }
 }
