@@ -112,6 +112,14 @@ inline void intersect(const int* valid, RTCScene scene, Query& query, RTCRayHit1
 #endif
 }
 
+inline void occluded(RTCScene scene, Query& query, RTCRay& ray) {
+#if RTC_VERSION_MAJOR >= 4
+    rtcOccluded1(scene, &ray, &query.occlude);
+#else
+    rtcOccluded1(scene, &query.context, &ray);
+#endif
+}
+
 inline void occluded(const int* valid, RTCScene scene, Query& query, RTCRay8& rays) {
 #if RTC_VERSION_MAJOR >= 4
     rtcOccluded8(valid, scene, &rays, &query.occlude);

@@ -129,6 +129,15 @@ bool FacetAccel::exact_blocked(const Vec3& origin, const Vec3& direction, double
     });
 }
 
+// What Embree says.
+bool FacetAccel::blocked_beyond(const Vec3& origin, const Vec3& direction, double near,
+                                double far) const {
+    embree::Query query(false);
+    RTCRayHit ray = embree::single_ray(origin, direction, float(near), far, opaque_mask);
+    embree::occluded(trees_.top(), query, ray.ray);
+    return ray.ray.tfar < 0;
+}
+
 bool FacetAccel::translucent(const Vec3& origin, const Vec3& direction, double nearest,
                              double farthest, Hit& hit) const {
     if (!translucent_) return false;
@@ -235,6 +244,15 @@ void FacetAccel::closest_packets(const Rays& rays, Hits& hits, bool coherent) co
     }
 }
 
+// So far from its start the ray does not find the facet again that it leaves.
+bool FacetAccel::blocked_at_small_angle(const ShadowRays& rays, std::size_t i) const {
+    const Vec3 origin = rays.origin[i], direction = rays.direction[i];
+    const double leaves = 2 * coordinate_rounding / rays.sin_to_facet[i];
+    const double far = rays.distance[i] - shadow_margin;
+    if (leaves < far && blocked_beyond(origin, direction, leaves, far)) return true;
+    return exact_blocked(origin, direction, rays.distance[i]);
+}
+
 template <class Width>
 void FacetAccel::block_packets(const ShadowRays& rays, std::span<const Index> asked,
                                std::span<double> visible) const {
@@ -269,8 +287,7 @@ void FacetAccel::block_packets(const ShadowRays& rays, std::span<const Index> as
         for (std::size_t lane = 0; lane < lanes; ++lane) {
             const std::size_t i = from[lane];
             if (packet.tfar[lane] >= 0) continue;
-            if (rays.sin_to_facet[i] >= grazing_sine ||
-                exact_blocked(rays.origin[i], rays.direction[i], rays.distance[i]))
+            if (rays.sin_to_facet[i] >= grazing_sine || blocked_at_small_angle(rays, i))
                 visible[i] = 0;
         }
     }

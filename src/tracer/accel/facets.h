@@ -86,6 +86,8 @@ class FacetAccel {
     void closest_at_edge(const Vec3& origin, const Vec3& direction, const Hit& found, float behind,
                          Hit& hit) const;
     bool exact_blocked(const Vec3& origin, const Vec3& direction, double distance) const;
+    bool blocked_at_small_angle(const ShadowRays& rays, std::size_t i) const;
+    bool blocked_beyond(const Vec3& origin, const Vec3& direction, double near, double far) const;
     double distance_to(Index instance, Index facet, const Vec3& origin,
                        const Vec3& direction) const;
 
