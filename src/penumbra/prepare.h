@@ -61,7 +61,7 @@ std::size_t drop_coincident_facets(Scene& scene);
 /// Precondition: the indices of instances, facets and materials are in range.
 Losses part_surfaces(Scene& scene);
 /// Moves one-sided facets that lie exactly on one another and are shown on opposite sides apart,
-/// each towards its own side, by a hundred-thousandth of the scene's radius: a ray that passed the
+/// each towards its own side, by four times POV-Ray's least distance: a ray that passed the
 /// one which is not there would start where the other is, too near to meet it. Returns how many it
 /// moved. Precondition: the indices of instances and facets are in range.
 std::size_t lift_back_to_back_facets(Scene& scene);

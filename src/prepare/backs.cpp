@@ -117,6 +117,7 @@ std::size_t lift_back_to_back_facets(Scene& scene) {
             of_mesh.insert(one.facet);
         }
     }
+    if (lifted.empty()) return 0;
     // Twice that lies between both: more than POV-Ray's least distance, and far more than float32's
     // rounding.
     const double height = 4 * least_distance / normalising_factor(bounds(scene));

@@ -63,6 +63,14 @@ void drop(Scene& scene, const std::map<Index, std::vector<Index>>& by_instance,
     }
 }
 
+// Not where the other one shows two sides and the kept one does not.
+bool shows_all_of(const Scene& scene, const Placed& kept, const Placed& other) {
+    const auto sides = [&](const Placed& p) {
+        return scene.materials[scene.meshes[scene.instances[p.instance].mesh].material].sides;
+    };
+    return sides(kept) == Sides::both || sides(other) == Sides::front;
+}
+
 }  // namespace
 
 std::size_t drop_coincident_facets(Scene& scene) {
@@ -76,7 +84,8 @@ std::size_t drop_coincident_facets(Scene& scene) {
     std::size_t count = 0;
     for (std::size_t i = 1, first = 0; i < facets.size(); ++i) {
         if (facets[i].hash != facets[first].hash) first = i;
-        if (first == i || !same_corners(corners(world, facets[first]), corners(world, facets[i])))
+        if (first == i || !shows_all_of(scene, facets[first], facets[i]) ||
+            !same_corners(corners(world, facets[first]), corners(world, facets[i])))
             continue;
         dropped[facets[i].instance].push_back(facets[i].facet);
         ++count;

@@ -116,6 +116,15 @@ TEST_CASE("Facets back to back, are those that show opposite sides") {
     CHECK(lift_back_to_back_facets(apart) == 0);
 }
 
+TEST_CASE("Facets that show both sides, are kept behind those that show one") {
+    Scene scene = two_colors();
+    scene.materials[scene.meshes[1].material].sides = Sides::both;
+    CHECK(drop_coincident_facets(scene) == 0);
+    CHECK(part_surfaces(scene).size() == 1);
+    CHECK(in_the_middle(scene) == Color(1, 0, 0));
+    CHECK(in_the_middle(seen_from_behind(scene)) == Color(0, 0, 1));
+}
+
 TEST_CASE("Shown backs, are named for each material") {
     Scene scene = smooth_cube();
     CHECK(shown_backs(scene).empty());  // closed
