@@ -157,7 +157,7 @@ std::string too_empty(const Metric& coverage) {
 // Throws where there is not what a comparison takes beside the pictures at most: while it looks for
 // the cause of a difference both of them encoded, before that a span with the maps of it.
 void check_memory(const Pair& pair) {
-    constexpr std::size_t pixel = 30, span_pixel = 280;  // bytes
+    constexpr std::size_t pixel = 18, span_pixel = 280;  // bytes
     const MemoryClaim claim(
         pair.counted().total() * pixel + pair.most_in_span(flip_radius) * span_pixel,
         fmt::format("comparing pictures of {}x{} pixels", pair.width(), pair.height()));

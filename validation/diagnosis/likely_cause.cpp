@@ -19,13 +19,31 @@ namespace {
 // A picture as a supposition changes it, row by row: large ones are never there as a whole.
 using ChangedRow = std::function<cv::Mat(int y)>;
 
-double mean_square_of_rows(const ChangedRow& changed, const cv::Mat& picture) {
-    std::vector<double> sums(std::size_t(picture.rows));
-    each_row(picture.rows, [&](int y) {
-        sums[std::size_t(y)] = cv::norm(changed(y), picture.row(y), cv::NORM_L2SQR);
+// Encoded pictures are kept in 16 bits: half the memory, and 1/500 of the least step that counts.
+constexpr double full = 65535;
+
+cv::Mat all_encoded(const LinearRows& picture) {
+    cv::Mat result(picture.height, picture.width, CV_16UC3);
+    each_row(result.rows, [&](int y) {
+        cv::Mat row = result.row(y);
+        encoded(picture.row(y)).convertTo(row, CV_16U, full);
+    });
+    return result;
+}
+
+cv::Mat as_float(const cv::Mat& kept) {
+    cv::Mat result;
+    kept.convertTo(result, CV_32F, 1 / full);
+    return result;
+}
+
+double mean_square_of_rows(const ChangedRow& changed, const cv::Mat& kept) {
+    std::vector<double> sums(std::size_t(kept.rows));
+    each_row(kept.rows, [&](int y) {
+        sums[std::size_t(y)] = cv::norm(changed(y), as_float(kept.row(y)), cv::NORM_L2SQR);
     });
     return std::accumulate(sums.begin(), sums.end(), 0.0) /
-           (picture.channels() * double(picture.total()));
+           (kept.channels() * double(kept.total()));
 }
 
 // What the suppositions look at: linear and encoded, and how far apart the encoded ones are.
@@ -34,16 +52,13 @@ struct Evidence {
     cv::Mat a, b;
     double before = 0;
 
-    double left(const ChangedRow& changed) const {
-        return mean_square_of_rows(changed, b) / before;
+    cv::Mat row(int y) const { return as_float(a.row(y)); }
+    cv::Mat reference_row(int y) const { return as_float(b.row(y)); }
+    double left(const ChangedRow& changed) const { return left(changed, b); }
+    double left(const ChangedRow& changed, const cv::Mat& other) const {
+        return mean_square_of_rows(changed, other) / before;
     }
 };
-
-cv::Mat all_encoded(const LinearRows& picture) {
-    cv::Mat result(picture.height, picture.width, CV_32FC3);
-    each_row(result.rows, [&](int y) { encoded(picture.row(y)).copyTo(result.row(y)); });
-    return result;
-}
 
 // ---- geometry ---------------------------------------------------------------------------------
 
@@ -117,14 +132,14 @@ std::vector<Finding> turned(const Evidence& e) {
         return result;
     };
     const int last = e.a.rows - 1;
-    std::vector<Finding> result = {{e.left([&](int y) { return reversed(e.a.row(y)); }), "mirror",
-                                    "the test picture is mirrored left to right"},
-                                   {e.left([&](int y) { return e.a.row(last - y); }), "flip",
-                                    "the test picture is upside down"},
-                                   {e.left([&](int y) { return reversed(e.a.row(last - y)); }),
-                                    "turn", "the test picture is turned by 180 degrees"}};
+    std::vector<Finding> result = {
+        {e.left([&](int y) { return reversed(e.row(y)); }), "mirror",
+         "the test picture is mirrored left to right"},
+        {e.left([&](int y) { return e.row(last - y); }), "flip", "the test picture is upside down"},
+        {e.left([&](int y) { return reversed(e.row(last - y)); }), "turn",
+         "the test picture is turned by 180 degrees"}};
     if (e.a.cols != e.a.rows) return result;
-    const auto column = [&](int x) { return e.a.col(x).clone().reshape(3, 1); };
+    const auto column = [&](int x) { return as_float(e.a.col(x)).reshape(3, 1); };
     for (const bool clockwise : {true, false}) {
         const double left =
             e.left([&](int y) { return clockwise ? column(last - y) : reversed(column(y)); });
@@ -144,7 +159,7 @@ Finding exchanged(const Evidence& e) {
     while (std::ranges::next_permutation(order).found) {
         const std::array<int, 6> pairs = {order[0], 0, order[1], 1, order[2], 2};
         const double left = e.left([&](int y) {
-            const cv::Mat row = e.a.row(y);
+            const cv::Mat row = e.row(y);
             cv::Mat result(row.size(), row.type());
             cv::mixChannels(&row, 1, &result, 1, pairs.data(), 3);
             return result;
@@ -223,7 +238,8 @@ float power(float value, double exponent) {
 Finding other_gamma(const Evidence& e) {
     double both = 0, own = 0;
     for (int y = 0; y < e.a.rows; ++y) {
-        const auto *const a = e.a.ptr<float>(y), *const b = e.b.ptr<float>(y);
+        const cv::Mat test = e.row(y), reference = e.reference_row(y);
+        const auto *const a = test.ptr<float>(), *const b = reference.ptr<float>();
         for (int x = 0; x < 3 * e.a.cols; ++x) {
             if (a[x] < 0.02F || b[x] < 0.02F || a[x] > 0.98F || b[x] > 0.98F) continue;
             // Errors of the logarithm count as those of the value.
@@ -235,7 +251,7 @@ Finding other_gamma(const Evidence& e) {
     const double gamma = both / own;
     if (!sane(gamma)) return {};
     const auto bent = [&](int y) {
-        return mapped(e.a.row(y), [&](float c) { return power(c, gamma); });
+        return mapped(e.row(y), [&](float c) { return power(c, gamma); });
     };
     return {e.left(bent), "gamma",
             fmt::format("the test picture's values to the power of {:.3g} are the reference's: "
@@ -249,17 +265,34 @@ std::vector<Finding> encodings(const Evidence& e) {
             return mapped(picture.row(y), [](float c) { return power(c, 1 / 2.2); });
         };
     };
-    return {{e.left([&](int y) { return mapped(e.a.row(y), linear_to_srgb); }), "no_srgb",
+    return {{e.left([&](int y) { return mapped(e.row(y), linear_to_srgb); }), "no_srgb",
              "the test picture looks as if it lacked the sRGB encoding, or the reference as if it "
              "were encoded twice"},
-            {e.left([&](int y) { return mapped(e.a.row(y), srgb_to_linear); }), "double_srgb",
+            {e.left([&](int y) { return mapped(e.row(y), srgb_to_linear); }), "double_srgb",
              "the test picture looks as if it were sRGB-encoded twice, or the reference as if it "
              "lacked the encoding"},
             {e.left(by_power(e.test)), "gamma_22",
              "the reference looks as if it were encoded with a gamma of 2.2 instead of sRGB"},
-            {mean_square_of_rows(by_power(e.reference), e.a) / e.before, "gamma_22",
+            {e.left(by_power(e.reference), e.a), "gamma_22",
              "the test picture looks as if it were encoded with a gamma of 2.2 instead of sRGB"},
             other_gamma(e)};
+}
+
+// The colour that most pixels of the border have, to 8 bits.
+cv::Vec3f border_color(const cv::Mat& kept) {
+    Majority border;
+    const auto count = [&](int y, int x) {
+        border.count(cv::Vec3f(kept.at<cv::Vec3w>(y, x)) * float(1 / full));
+    };
+    for (int x = 0; x < kept.cols; ++x) {
+        count(0, x);
+        count(kept.rows - 1, x);
+    }
+    for (int y = 0; y < kept.rows; ++y) {
+        count(y, 0);
+        count(y, kept.cols - 1);
+    }
+    return border.most().color;
 }
 
 // Another colour wherever the test picture shows its own background.
@@ -267,10 +300,11 @@ Finding other_background(const Evidence& e) {
     const cv::Vec3f own = border_color(e.a), other = border_color(e.b);
     if (alike(own, other)) return {};
     const auto changed = [&](int y) {
-        cv::Mat row = e.a.row(y).clone();
+        cv::Mat row = e.row(y);
+        const cv::Mat reference = e.reference_row(y);
         for (int x = 0; x < row.cols; ++x)
             if (auto& color = row.at<cv::Vec3f>(x); alike(color, own))
-                color = e.b.at<cv::Vec3f>(y, x);
+                color = reference.at<cv::Vec3f>(x);
         return row;
     };
     const auto bytes = [](const cv::Vec3f& c) {
@@ -324,7 +358,7 @@ Finding likely_cause(const Image& test, const Image& reference) {
 Finding likely_cause(const LinearRows& test, const LinearRows& reference) {
     Evidence evidence = {
         .test = test, .reference = reference, .a = all_encoded(test), .b = all_encoded(reference)};
-    evidence.before = mean_square(evidence.a, evidence.b);
+    evidence.before = mean_square(evidence.a, evidence.b) / (full * full);
     if (!(evidence.before > 0)) return {};
     std::vector<Finding> findings = turned(evidence);
     findings.push_back(whole_shift(evidence));

@@ -108,6 +108,8 @@ Registration register_pictures(const cv::Mat& test_encoded, const cv::Mat& refer
         cv::resize(test, test, size, 0, 0, cv::INTER_AREA);
         cv::resize(reference, reference, size, 0, 0, cv::INTER_AREA);
     }
+    for (cv::Mat* picture : {&test, &reference})
+        if (picture->depth() == CV_16U) picture->convertTo(*picture, CV_32F, 1.0 / 65535);
     const std::array<bool, 4> free = free_parameters(moves);
     const cv::Mat gray = luma(test), other = luma(reference);
     Parameters p = {};

@@ -22,7 +22,8 @@ struct Registration {
 enum class Moves { shift, zoom, roll, all };
 
 /// The best motion of a kind. Pictures are compared through a blur of two and a half pixels,
-/// because one sample a pixel makes edges jump by whole pixels. Small pictures have none.
+/// because one sample a pixel makes edges jump by whole pixels. Small pictures have none. Also
+/// takes pictures in 16 bits, CV_16UC3.
 Registration register_pictures(const cv::Mat& test_encoded, const cv::Mat& reference_encoded,
                                Moves moves);
 

@@ -63,19 +63,6 @@ Background Majority::most() const {
     return {{value(0), value(1), value(2)}, value(3)};
 }
 
-cv::Vec3f border_color(const cv::Mat& encoded) {
-    Majority border;
-    for (int x = 0; x < encoded.cols; ++x) {
-        border.count(encoded.at<cv::Vec3f>(0, x));
-        border.count(encoded.at<cv::Vec3f>(encoded.rows - 1, x));
-    }
-    for (int y = 0; y < encoded.rows; ++y) {
-        border.count(encoded.at<cv::Vec3f>(y, 0));
-        border.count(encoded.at<cv::Vec3f>(y, encoded.cols - 1));
-    }
-    return border.most().color;
-}
-
 double mean_square(const cv::Mat& a, const cv::Mat& b) {
     const double distance = cv::norm(a, b, cv::NORM_L2);
     return distance * distance / (a.channels() * double(a.total()));

@@ -79,9 +79,6 @@ class Majority {
     std::map<std::array<int, 4>, std::size_t> counts_;
 };
 
-/// The colour that most pixels of the border have, to 8 bits.
-cv::Vec3f border_color(const cv::Mat& encoded);
-
 /// Mean over pixels and channels of the squared difference.
 double mean_square(const cv::Mat& a, const cv::Mat& b);
 
