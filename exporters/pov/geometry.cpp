@@ -79,8 +79,9 @@ void append_texcoords(std::string& out, const std::vector<Vec2f>& texcoords) {
     });
 }
 
-std::string tint_name(const Plan& plan, const MeshPlan& mesh, std::size_t tint) {
-    return identifier(plan, "Tint", mesh.name + "_" + std::to_string(tint + 1));
+std::string tint_name(const Plan& plan, const MeshPlan& mesh, const Look& look, std::size_t tint) {
+    return identifier(plan, "Tint",
+                      mesh.name + (look.mirrored ? "__mirrored_" : "_") + std::to_string(tint + 1));
 }
 
 // Textures of several layers can only be listed by name.
@@ -89,17 +90,17 @@ void append_texture_list(std::string& out, const Plan& plan, const MeshPlan& mes
     const bool single = is_single(plan, look);
     out += "  texture_list { " + std::to_string(mesh.tints.size());
     for (std::size_t i = 0; i < mesh.tints.size(); ++i)
-        out +=
-            ",\n    texture { " +
-            (single ? single_texture(plan, look, mesh.tints[i].color) : tint_name(plan, mesh, i)) +
-            " }";
+        out += ",\n    texture { " +
+               (single ? single_texture(plan, look, mesh.tints[i].color)
+                       : tint_name(plan, mesh, look, i)) +
+               " }";
     out += "\n  }\n";
 }
 
 void declare_tints(std::string& out, const Plan& plan, const MeshPlan& mesh, const Look& look) {
     if (is_single(plan, look)) return;
     for (std::size_t i = 0; i < mesh.tints.size(); ++i)
-        out += tint_declaration(plan, look, tint_name(plan, mesh, i), mesh.tints[i]);
+        out += tint_declaration(plan, look, tint_name(plan, mesh, look, i), mesh.tints[i]);
 }
 
 // A facet's front is for POV-Ray where its corners run clockwise in a right-handed space.
@@ -129,13 +130,12 @@ void append_faces(std::string& out, const Mesh& mesh, const MeshPlan& plan, Side
     });
 }
 
-void append_mesh(std::string& out, const Plan& plan, std::size_t index) {
+void append_mesh(std::string& out, const Plan& plan, std::size_t index, const Look& look) {
     const Mesh& mesh = plan.scene->meshes[index];
     const MeshPlan& mesh_plan = plan.meshes[index];
-    const Look& look = plan.looks[mesh_plan.look];
     out += '\n';
     if (!mesh_plan.tints.empty()) declare_tints(out, plan, mesh_plan, look);
-    out += "#declare " + identifier(plan, "Mesh", mesh_plan.name) + " = mesh2 {";
+    out += "#declare " + mesh_identifier(plan, mesh_plan, look) + " = mesh2 {";
     if (mesh.name != mesh_plan.name && !mesh.name.empty()) out += "  // " + sdl::comment(mesh.name);
     out += '\n';
     append_vectors(out, "vertex_vectors", mesh.positions);
@@ -160,6 +160,11 @@ std::size_t expected_size(const Plan& plan) {
 
 }  // namespace
 
+std::string mesh_identifier(const Plan& plan, const MeshPlan& mesh, const Look& look) {
+    const bool own = look.mirrored && !mesh.tints.empty();
+    return identifier(plan, "Mesh", mesh.name + (own ? "__mirrored" : ""));
+}
+
 std::string geometry_text(const Plan& plan) {
     const MemoryClaim claim(2 * expected_size(plan), plan.stem + "_geometry.inc");
     std::string out;
@@ -173,7 +178,11 @@ std::string geometry_text(const Plan& plan) {
                 "// inside_vector makes POV-Ray find every facet along a ray; without it a facet\n"
                 "// that is too close to count can hide one behind it.\n";
         }
-        append_mesh(out, plan, i);
+        const Look& look = plan.looks[plan.meshes[i].look];
+        append_mesh(out, plan, i, look);
+        // Where its vertices have textures a mesh cannot wear others.
+        if (look.twin != no_index && !plan.meshes[i].tints.empty())
+            append_mesh(out, plan, i, plan.looks[look.twin]);
     }
     return out;
 }

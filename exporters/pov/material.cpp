@@ -16,132 +16,7 @@ namespace {
 
 using sdl::number;
 
-const Color black(0), white(1);
-
-Passing passing_of(const Material& m) {
-    const double through = 1 - double(m.opacity);
-    return {.filter = float(through * double(m.transmission)),
-            .transmit = m.transmission == 0 ? 1 - m.opacity
-                                            : float(through * (1 - double(m.transmission)))};
-}
-
-// Without ambient, diffuse and emission: what does not depend on the opacity.
-Finish gloss_of(const Material& m) {
-    return {.phong = m.specular,
-            .phong_size = m.shininess,
-            .metallic = m.metallic,
-            .reflection = m.reflection,
-            .reflection_metallic = m.metallic,
-            .fresnel = m.fresnel};
-}
-
-Finish finish_of(const Material& m) {
-    Finish finish = gloss_of(m);
-    finish.ambient = m.ambient;
-    finish.diffuse = m.diffuse;
-    return finish;
-}
-
-// POV-Ray multiplies `emission` by the pigment. True when dividing by it undoes that.
-bool divide_emission(const Color& pigment, const Color& emission, Color& quotient) {
-    for (int i = 0; i < 3; ++i) {
-        quotient[i] = emission[i] == 0 ? 0 : emission[i] / pigment[i];
-        if (!std::isfinite(quotient[i])) return false;
-        if (std::abs(quotient[i] * pigment[i] - emission[i]) > 1e-6F * emission[i]) return false;
-    }
-    return true;
-}
-
-// A layer that only adds light: all but transparent, and emitting the more for it. The layers below
-// lose a millionth.
-constexpr float veil = 1 / 1048576.0F;
-
-constexpr const char* glowing = "adds light: emits the more for being all but transparent";
-
-Layer glow(const Material& m) {
-    return {.pigment = color(white, {.transmit = 1 - veil}),
-            .finish = {.emission = m.emission * (m.opacity / veil)},
-            .note = glowing};
-}
-
-Layer image_glow(const Plan& plan, const Look& look, const Material& m) {
-    return {.pigment = image_map(plan, look, *m.emission_map, {.transmit = 1 - veil}),
-            .finish = {.emission = m.emission / veil},
-            .note = glowing};
-}
-
-// Light from behind in a colour of its own: `diffuse 0, b` of a layer that hides nothing. The
-// factor of an image is grey: see normalise().
-Layer back_light(const Plan& plan, const Look& look, const Material& m) {
-    const Passing passing = {.transmit = 1 - veil};
-    const auto& image = m.diffuse_transmission_map;
-    Layer layer{.note = "adds light from behind: scatters the more for being all but transparent"};
-    layer.pigment =
-        image ? image_map(plan, look, *image, passing) : color(m.diffuse_transmission, passing);
-    layer.finish.diffuse_behind = m.opacity / veil * (image ? m.diffuse_transmission.x : 1);
-    return layer;
-}
-
-// A surface whose pigment is one of POV-Ray's own.
-void add_simple_layers(const Plan& plan, const Look& look, const Material& m,
-                       std::vector<Layer>& layers) {
-    const Passing passing = passing_of(m);
-    const auto add = [&](const Finish& finish) {
-        layers.push_back({.pigment = look.tinted ? "" : pigment(plan, look, passing),
-                          .finish = finish,
-                          .tinted = look.tinted,
-                          .passing = passing});
-    };
-    Finish finish = finish_of(m);
-    if (m.emission == black || m.emission_map || m.opacity == 0) return add(finish);
-    if (std::holds_alternative<std::monostate>(m.pattern) && !look.tinted) {
-        if (divide_emission(m.color, m.emission, finish.emission)) return add(finish);
-        const bool unseen = m.color == black || (m.ambient == black && m.diffuse == 0);
-        if (unseen && m.metallic == 0 && m.transmission == 0) {
-            finish = gloss_of(m);
-            finish.emission = m.emission;
-            layers.push_back({.pigment = color(white, passing), .finish = finish});
-            return;
-        }
-    }
-    add(finish_of(m));
-    layers.push_back(glow(m));
-}
-
-// An image times a colour: the colour is a filter over the image.
-void add_product_layers(const Plan& plan, const Look& look, const Material& m,
-                        std::vector<Layer>& layers) {
-    Layer image{.pigment = pigment(plan, look, passing_of(m))};
-    image.finish.ambient = m.ambient;
-    image.finish.diffuse = m.diffuse;
-    layers.push_back(image);
-    layers.push_back({.pigment = fmt::format("rgbf <{}, {}, {}, 1>", number(m.color.x),
-                                             number(m.color.y), number(m.color.z)),
-                      .finish = m.metallic > 0 ? Finish{} : gloss_of(m),
-                      .tinted = look.tinted,
-                      .filter = true});
-    // The highlight of a metal takes the colour of the image, which needs a layer of its own.
-    if (m.metallic > 0)
-        layers.push_back({.pigment = image_pigment(plan, look, *std::get_if<ImageMap>(&m.pattern),
-                                                   {.transmit = 1}),
-                          .finish = gloss_of(m)});
-    if (m.emission != black && !m.emission_map && m.opacity != 0) layers.push_back(glow(m));
-}
-
-// Highlight and mirror in a colour of their own: a transparent layer that wears that colour. Light
-// passes it whole, and its phong and reflection are not scaled by that.
-Layer gloss_layer(const Plan& plan, const Look& look, const Material& m, const SpecularLobe& lobe,
-                  bool by_image) {
-    Material shown = m;
-    shown.specular = lobe.specular;
-    shown.shininess = lobe.shininess;
-    shown.reflection = lobe.reflection;
-    Layer layer{.finish = gloss_of(shown)};
-    if (m.specular_color) layer.finish.metallic = 1;
-    layer.pigment = by_image ? image_map(plan, look, m.specular_lobes->color, {.transmit = 1})
-                             : color(*m.specular_color, {.transmit = 1});
-    return layer;
-}
+const Color black(0);
 
 // "ambient 0.1" is what people write for "ambient rgb 0.1".
 std::string item(const char* name, const Color& c) {
@@ -180,10 +55,19 @@ std::string no_normal(const Plan& plan, const char* before) {
     return in_other_scenes(plan) ? before + std::string("normal { bumps 0 }") : "";
 }
 
+// The normal of a layer. The gradient is stretched so that it rises everywhere.
+std::string normal_text(const Plan& plan, const Layer& layer, const char* before) {
+    const auto& [axis, amount, offset] = layer.mirror;
+    if (amount == 0) return no_normal(plan, before);
+    return fmt::format("{}normal {{ gradient {}, {}{} phase 0.5 scale 1e9 }}", before,
+                       sdl::vector(axis), number(amount),
+                       in_other_scenes(plan) ? " frequency 1 ramp_wave turbulence 0" : "");
+}
+
 std::string texture_text(const Plan& plan, const Layer& layer) {
     return fmt::format("texture {{{}\n  pigment {{ ",
                        layer.note[0] != 0 ? std::string("  // ") + layer.note : "") +
-           layer.pigment + " }" + no_normal(plan, "\n  ") + "\n  " +
+           layer.pigment + " }" + normal_text(plan, layer, "\n  ") + "\n  " +
            finish_text(plan, layer.finish, "  ") + "\n}\n";
 }
 
@@ -196,7 +80,7 @@ std::string tinted_pigment(const Layer& layer, const Color& tint) {
 std::string tinted_text(const Plan& plan, const Layer& layer, const std::string& name,
                         const Color& tint) {
     return fmt::format("pigment {{ {} }}{} finish {{ {} }}", tinted_pigment(layer, tint),
-                       no_normal(plan, " "), identifier(plan, "Finish", name));
+                       normal_text(plan, layer, " "), identifier(plan, "Finish", name));
 }
 
 std::size_t lobe_count(const Material& m) {
@@ -285,42 +169,6 @@ std::string declare_lobes(const Plan& plan, const Look& look, const std::string&
                pattern_text(plan, look, m.specular_lobes->level, entries);
     return out;
 }
-
-}  // namespace
-
-std::vector<Layer> layers_of(const Plan& plan, const Look& look, std::size_t lobe) {
-    const Material& given = material_of(plan, look);
-    Material m = given;
-    const bool mesh = look.surface == Look::Surface::mesh;
-    const bool specular_lobes = m.specular_lobes && mesh;
-    const bool by_image = specular_lobes && m.specular_lobes->color.texture != no_index;
-    const SpecularLobe own = {m.specular, m.shininess, m.reflection};
-    const SpecularLobe shown = specular_lobes ? m.specular_lobes->lobes[lobe] : own;
-    const bool own_color =
-        by_image || (m.specular_color && (shown.specular > 0 || shown.reflection != black));
-    const SpecularLobe base = own_color ? SpecularLobe{} : shown;
-    m.specular = base.specular;
-    m.shininess = base.shininess;
-    m.reflection = base.reflection;
-    if (own_color && !by_image) m.metallic = 0;
-    if (!mesh) {
-        m.emission_map.reset();
-        m.diffuse_transmission_map.reset();
-    }
-    const bool image = std::holds_alternative<ImageMap>(m.pattern);
-    std::vector<Layer> layers;
-    if (image && (look.tinted || m.color != white))
-        add_product_layers(plan, look, m, layers);
-    else
-        add_simple_layers(plan, look, m, layers);
-    if (m.emission_map && m.emission != black) layers.push_back(image_glow(plan, look, m));
-    if (m.diffuse_transmission != black && m.opacity > 0)
-        layers.push_back(back_light(plan, look, m));
-    if (own_color) layers.push_back(gloss_layer(plan, look, given, shown, by_image));
-    return layers;
-}
-
-namespace {
 
 // Declarations that end in that of `name`, the look's texture; `tint` is that of a tinted look.
 std::string texture_declaration(const Plan& plan, const Look& look, const std::string& name,

@@ -4,6 +4,7 @@
 #include "exporters/pov/sdl.h"
 #include "scene/check_options.h"
 #include "scene/texture/image_maps.h"
+#include "scene/vertex_textures.h"
 
 #include "penumbra/light_model.h"
 
@@ -55,10 +56,6 @@ std::vector<const ImageMap*> maps_of(const Material& material, bool mesh) {
     return maps;
 }
 
-bool plain(const Material& material) {
-    return std::holds_alternative<std::monostate>(material.pattern);
-}
-
 struct TintBits {
     std::array<std::uint32_t, 7> bits;
     explicit TintBits(const Tint& t)
@@ -95,8 +92,18 @@ struct Planner {
         if (look.surface == Look::Surface::plane) name += "_plane";
         if (look.tinted) name += "_tinted";
         look.name = look_names.unique(name, std::to_string(plan.looks.size() + 1));
+        const auto index = Index(plan.looks.size());
+        if (!blurs(material)) {
+            plan.looks.push_back(std::move(look));
+            return index;
+        }
+        Look twin = look;
+        look.twin = index + 1;
+        twin.mirrored = true;
+        twin.name += "__mirrored";
         plan.looks.push_back(std::move(look));
-        return Index(plan.looks.size() - 1);
+        plan.looks.push_back(std::move(twin));
+        return index;
     }
 
     Index look_of(Index material, Look::Surface surface, bool tinted = false) {
@@ -159,17 +166,12 @@ struct Planner {
 
     void add_mesh(const Mesh& mesh, MeshPlan& out) {
         const Material& material = scene.materials[mesh.material];
-        const bool image = image_of(material) != nullptr;
-        const bool tinted =
-            (image || plain(material)) && std::any_of(mesh.colors.begin(), mesh.colors.end(),
-                                                      [](const Color& c) { return c != Color(1); });
+        const auto [tinted, faded] = vertex_textures(mesh, material);
         out.name = mesh_names.unique(mesh.name, std::to_string(&mesh - scene.meshes.data() + 1));
         out.look = look_of(mesh.material, Look::Surface::mesh, tinted);
         out.normals = material.smooth && !mesh.normals.empty();
         const std::vector<const ImageMap*> maps = maps_of(material, true);
         out.texcoords = !maps.empty() && !mesh.texcoords.empty();
-        const bool faded =
-            !mesh.alphas.empty() && material.alpha_map && !material.alpha_map->cutoff;
         if (tinted || faded) find_tints(mesh, tinted, faded, out);
         for (const ImageMap* map : maps) use_map(*map, mesh);
     }

@@ -40,7 +40,9 @@ struct Look {
     PlaneFrame frame = {};  ///< of the plane
     bool tinted = false;    ///< has vertex colours
     bool other = false;     ///< the other look of a Blend
+    bool mirrored = false;  ///< as rays see it that were mirrored: see blurs()
     std::string name = {};  ///< what its identifiers end in: "wood" of Material_wood
+    Index twin = no_index;  ///< into Plan::looks: the same, mirrored; of looks that blur
 };
 
 /// What tells the textures of vertices apart.

@@ -3,6 +3,7 @@
 #include "exporters/pov/geometry.h"
 #include "exporters/pov/material.h"
 #include "exporters/pov/object_text.h"
+#include "exporters/pov/objects.h"
 #include "exporters/pov/plan.h"
 #include "exporters/pov/sdl.h"
 #include "exporters/shared/targets.h"
@@ -151,73 +152,6 @@ struct Writer {
         }
     }
 
-    // The material and what else stands in an object, after its transform: patterns in world space
-    // must not move with it.
-    std::string surface(const Look& look, bool with_texture = true) const {
-        const Material& m = scene.scene.materials[look.material];
-        std::string text =
-            with_texture ? " texture { " + identifier(plan, "Material", look.name) + " }" : "";
-        return text + pov::interior(m);
-    }
-
-    void title(const std::string& name) {
-        if (!name.empty()) out += "  // " + sdl::comment(name) + "\n";
-    }
-
-    // Which side a ray meets POV-Ray asks the normal that shades it: see scene/sides.h.
-    std::string backs(std::size_t instance, const pov::MeshPlan& mesh) const {
-        const Backs& found = plan.backs[instance];
-        if (!found.hidden) return "";
-        const std::string nothing = identifier(plan, "Nothing");
-        // POV-Ray asks for a texture of the front beside those in the mesh, and does not show it.
-        std::string text = mesh.tints.empty() ? "" : " texture { pigment { rgb 0 } }";
-        if (found.from == 0) return text + " interior_texture { " + nothing + " }";
-        const std::string from = number(found.half_turns());
-        return text +
-               fmt::format("\n    interior_texture {{ aoi texture_map {{ [{} {}] [{} {}] }} }}",
-                           from, identifier(plan, "Material", plan.looks[mesh.look].name), from,
-                           nothing);
-    }
-
-    // Backs cast shadows, too. POV-Ray sees that by itself where one plain opaque texture shows;
-    // where textures are mixed or let light through it asks the interior texture as well.
-    bool needs_shadow(std::size_t index) const {
-        const pov::MeshPlan& mesh = plan.meshes[scene.scene.instances[index].mesh];
-        if (mesh.name.empty() || !plan.backs[index].hidden) return false;
-        const Material& m = scene.scene.materials[plan.looks[mesh.look].material];
-        return !opaque(m) || m.specular_lobes || m.blend;
-    }
-
-    void instance(std::size_t index) {
-        const Instance& instance = scene.scene.instances[index];
-        const pov::MeshPlan& mesh = plan.meshes[instance.mesh];
-        if (mesh.name.empty()) return;
-        if (instance.name != scene.scene.meshes[instance.mesh].name) title(instance.name);
-        const std::string where = pov::placement(instance.transform);
-        const std::string look = where + surface(plan.looks[mesh.look], mesh.tints.empty());
-        const bool two = needs_shadow(index);
-        object(mesh, look + backs(index, mesh) + (two ? " no_shadow" : ""));
-        if (two) object(mesh, look + " no_image no_reflection");  // the shadow
-    }
-
-    void object(const pov::MeshPlan& mesh, const std::string& text) {
-        out += "  object { " + identifier(plan, "Mesh", mesh.name) + text;
-        out += text.find('\n') == std::string::npos ? " }\n" : "\n  }\n";
-    }
-
-    void sphere(const Sphere& sphere, const Look& look) {
-        title(sphere.name);
-        out += "  sphere { " + sdl::vector(sphere.center) + ", " + number(sphere.radius) +
-               surface(look) + " }\n";
-    }
-
-    void plane(const Plane& plane, const Look& look) {
-        title(plane.name);
-        const Vec3 normal = plane.normal.normalized();
-        out += "  plane { " + sdl::vector(normal) + ", " + number(normal.dot(plane.point)) +
-               surface(look) + " }\n";
-    }
-
     void world() {
         section("lights and objects");
         out +=
@@ -226,30 +160,12 @@ struct Writer {
             "light_group {\n";
         for (const Light& l : scene.scene.lights) light(l);
         out += '\n';
-        objects();
+        out += pov::objects_text(plan);
         out += "}\n";
     }
 
-    void objects() {
-        for (std::size_t i = 0; i < scene.scene.instances.size(); ++i) instance(i);
-        for (std::size_t i = 0; i < scene.scene.spheres.size(); ++i)
-            sphere(scene.scene.spheres[i], plan.looks[plan.spheres[i]]);
-        for (std::size_t i = 0; i < scene.scene.planes.size(); ++i)
-            plane(scene.scene.planes[i], plan.looks[plan.planes[i]]);
-    }
-
-    static bool is_drawn(const pov::MeshPlan& mesh) { return !mesh.name.empty(); }
-
-    std::size_t object_count() const {
-        std::size_t count = scene.scene.spheres.size() + scene.scene.planes.size();
-        for (std::size_t i = 0; i < scene.scene.instances.size(); ++i)
-            if (is_drawn(plan.meshes[scene.scene.instances[i].mesh]))
-                count += needs_shadow(i) ? 2 : 1;
-        return count;
-    }
-
     void geometry() {
-        if (std::none_of(plan.meshes.begin(), plan.meshes.end(), is_drawn)) return;
+        if (std::none_of(plan.meshes.begin(), plan.meshes.end(), pov::is_drawn)) return;
         section("geometry");
         out += "#include \"" + plan.stem + "_geometry.inc\"\n";
     }
@@ -281,9 +197,9 @@ struct Writer {
             out += meshes;
         }
         section("the model");
-        const std::size_t count = object_count();
+        const std::size_t count = pov::object_count(plan);
         out += "#declare " + name + (count == 1 ? " =\n" : " = union {\n");
-        objects();
+        out += pov::objects_text(plan);
         out += count == 1 ? "\n" : "}\n\n";
         out += "#version " + version + ";\n";
         return std::move(out);

@@ -4,6 +4,8 @@
 #include "base/text/text.h"
 #include "importers/sidecar/sidecar.h"
 
+#include "penumbra/light_model.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -104,6 +106,9 @@ void read_material(Section& section, Material& material, Scene& scene, TextureFi
     Color highlight = material.specular_color.value_or(Color(1));
     if (section.read_color("specular_color", highlight)) material.specular_color = highlight;
     section.read_factor("reflection", material.reflection);
+    section.read("roughness", material.roughness, fraction);
+    section.read("mirrors", material.mirrors, {.low = 1, .high = 32});
+    if (!is_mirror_count(material.mirrors)) section.reject("mirrors", "must be 1, 7, 13, 19 or 32");
     section.read_color("emission", material.emission);
     section.read_factor("diffuse_transmission", material.diffuse_transmission);
     section.read("opacity", material.opacity, fraction);

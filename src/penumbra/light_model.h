@@ -30,6 +30,26 @@ Vec3 fade_exponent(const Absorption& absorption);
 /// `light`.
 std::vector<Source> virtual_sources(const Light& light);
 
+/// One of the mirrors that a rough one is made of: its normal is normalize(N + offset), N the
+/// shading normal turned to the eye. POV-Ray makes the same of `normal { gradient axis, amount }`,
+/// in the space in which the texture lies.
+struct VirtualMirror {
+    Vec3 axis = Vec3(0);  ///< unit
+    float amount = 0;     ///< 0: the mirror is not displaced
+    Vec3 offset = Vec3(0);
+};
+
+/// Can a rough reflection have that many mirrors?
+bool is_mirror_count(int count);
+
+/// The mirrors of a reflection, each with 1/n of it, in a fixed order: one that is not displaced
+/// where it is sharp. Precondition: is_mirror_count(count).
+std::vector<VirtualMirror> virtual_mirrors(float roughness, int count);
+
+/// Has the material a reflection of several mirrors? Light that was mirrored once sees a single one
+/// in its place, so that rays grow by the mirrors' number and not by its powers.
+bool blurs(const Material& material);
+
 /// Where `map` is looked up at the mesh's texture coordinates `uv`.
 inline Vec2 map_texcoord(const ImageMap& map, const Vec2& uv) {
     const auto& t = map.transform;

@@ -88,6 +88,7 @@ struct AlphaMap {
 struct SpecularLobe {
     float specular = 0, shininess = 40;
     Color reflection = Color(0);
+    float roughness = 0;  ///< of the reflection
 };
 
 /// Images that vary highlight and mirror over an opaque mesh, in place of Material's specular,
@@ -144,7 +145,11 @@ struct Material {
     /// The highlight's own colour, in place of P in M; a metal's reflection takes it too.
     std::optional<Color> specular_color = {};
     Color reflection = Color(0);  ///< mirror coefficient per channel
-    Color emission = Color(0);    ///< radiance, not multiplied by P
+    /// [0, 1], of the reflection: it is the mean of `mirrors` mirror images by displaced normals,
+    /// see virtual_mirrors(). Of opaque surfaces; of others it is sharp.
+    float roughness = 0;
+    int mirrors = 7;            ///< 1 (sharp), 7, 13, 19 or 32
+    Color emission = Color(0);  ///< radiance, not multiplied by P
     /// K_T per channel, not multiplied by P: light from behind that is scattered to the eye.
     Color diffuse_transmission = Color(0);
     float opacity = 1;       ///< [0, 1]

@@ -4,6 +4,7 @@
 #include "scene/transforms.h"
 #include "scene/vertex_arrays.h"
 
+#include "penumbra/light_model.h"
 #include "penumbra/scene.h"
 
 #include <fmt/format.h>
@@ -47,6 +48,9 @@ struct Examiner {
                     finite_vector(m.diffuse_transmission),
                 who + " has a number that is not finite");
         require(m.opacity >= 0 && m.opacity <= 1, who + " has an opacity outside [0, 1]");
+        require(m.roughness >= 0 && m.roughness <= 1, who + " has a roughness outside [0, 1]");
+        require(is_mirror_count(m.mirrors),
+                who + " has a number of mirrors that is not 1, 7, 13, 19 or 32");
         require(m.ior > 0 && finite(m.ior),
                 who + " has an index of refraction that is not positive");
         maps(m, who);
@@ -90,6 +94,10 @@ struct Examiner {
         require(!m.specular_lobes ||
                     (!m.specular_lobes->lobes.empty() && m.specular_lobes->lobes.size() <= 16),
                 who + " has a gloss of no lobes or of more than 16");
+        if (m.specular_lobes)
+            for (const SpecularLobe& lobe : m.specular_lobes->lobes)
+                require(lobe.roughness >= 0 && lobe.roughness <= 1,
+                        who + " has a gloss with a roughness outside [0, 1]");
         require(m.opacity == 1 || (!m.emission_map && !m.specular_lobes),
                 who + " is translucent and has an emission map or a gloss, which need it opaque");
         require(m.opacity == 1 || !m.diffuse_transmission_map,

@@ -82,8 +82,8 @@ class Hasher {
         add_all(map, cutoff);
     }
     void add(const SpecularLobe& lobe) {
-        const auto& [specular, shininess, reflection] = lobe;
-        add_all(specular, shininess, reflection);
+        const auto& [specular, shininess, reflection, roughness] = lobe;
+        add_all(specular, shininess, reflection, roughness);
     }
     void add(const SpecularLobes& specular_lobes) {
         const auto& [color, level, lobes] = specular_lobes;
@@ -103,14 +103,14 @@ class Hasher {
     }
     void add(const Material& material) {
         const auto& [name, color, pattern, ambient, diffuse, specular, shininess, metallic,
-                     specular_color, reflection, emission, diffuse_transmission, opacity,
-                     transmission, ior, fresnel, smooth, absorption, sides, emission_map,
+                     specular_color, reflection, roughness, mirrors, emission, diffuse_transmission,
+                     opacity, transmission, ior, fresnel, smooth, absorption, sides, emission_map,
                      diffuse_transmission_map, alpha_map, specular_lobes, normal_map, blend] =
             material;
         add_all(name, color, pattern, ambient, diffuse, specular, shininess, metallic,
-                specular_color, reflection, emission, diffuse_transmission, opacity, transmission,
-                ior, fresnel, smooth, absorption, sides, emission_map, diffuse_transmission_map,
-                alpha_map, specular_lobes, normal_map, blend);
+                specular_color, reflection, roughness, mirrors, emission, diffuse_transmission,
+                opacity, transmission, ior, fresnel, smooth, absorption, sides, emission_map,
+                diffuse_transmission_map, alpha_map, specular_lobes, normal_map, blend);
     }
     void add(const Tangent& tangent) {
         const auto& [direction, handedness] = tangent;

@@ -17,23 +17,23 @@ double ratio(double a, double b) { return double(float(a) / float(b)); }
 // does (source/backend/render/trace.cpp of 3.7, ComputeRefraction): only leaving the object that
 // was entered last bends the ray.
 double cross_boundary(const PreparedScene& prepared, Media& media, MediumStack& inside,
-                      Index object) {
-    const auto index_of = [&](Index o) { return prepared.material_of(o).ior; };
-    const double own = index_of(object);
+                      Index medium) {
+    const auto index_of = [&](Index o) { return prepared.material_in(o).ior; };
+    const double own = index_of(medium);
     const bool in_air = inside.count() == 0;
     const Index around = in_air ? no_index : inside.last();
-    if (media.toggle(inside, object)) return in_air ? 1 / own : ratio(index_of(around), own);
-    if (around != object) return 1;
+    if (media.toggle(inside, medium)) return in_air ? 1 / own : ratio(index_of(around), own);
+    if (around != medium) return 1;
     return inside.count() == 0 ? own : ratio(own, index_of(inside.last()));
 }
 
 // The index of refraction behind the surface over that before it, as POV-Ray sees it when it asks
 // for Fresnel's term (source/backend/render/trace.cpp of 3.7, ComputeRelativeIOR).
-double relative_index(const PreparedScene& prepared, const MediumStack& inside, Index object) {
-    const double own = prepared.material_of(object).ior;
+double relative_index(const PreparedScene& prepared, const MediumStack& inside, Index medium) {
+    const double own = prepared.material_in(medium).ior;
     if (inside.count() == 0) return own;
-    const double last = prepared.material_of(inside.last()).ior;
-    if (!inside.contains(object)) return ratio(own, last);
+    const double last = prepared.material_in(inside.last()).ior;
+    if (!inside.contains(medium)) return ratio(own, last);
     return inside.count() == 1 ? 1 / own : ratio(last, own);
 }
 
@@ -47,17 +47,11 @@ double fresnel_reflectance(double index, double cosine) {
     return std::clamp(0.5 * a * a * (1 + b * b), 0.0, 1.0);
 }
 
-// What the lobes of the surface point reflect, in its tint.
-Vec3 mirrored_share(const SurfacePoints& surfaces, std::size_t slot) {
-    const PreparedMaterial& material = *surfaces.material[slot];
-    const LobeMix& mix = surfaces.lobes[slot];
-    Vec3 share = material.lobes[mix.first].reflection;
-    if (mix.share > 0)
-        share = share * (1 - mix.share) + material.lobes[mix.first + 1].reflection * mix.share;
-    if (material.metallic > 0)
-        share *= metallic_tint(material.metallic, -surfaces.view[slot].dot(surfaces.normal[slot]),
-                               surfaces.tint[slot]);
-    return share;
+// What the lobes of the surface point reflect together.
+Vec3 reflection_of(const PreparedMaterial& material, const LobeMix& mix) {
+    const Vec3 first = material.lobes[mix.first].reflection;
+    if (mix.share == 0) return first;
+    return first * (1 - mix.share) + material.lobes[mix.first + 1].reflection * mix.share;
 }
 
 // Pushes the ray that goes on behind the surface. Returns whether it is reflected totally instead.
@@ -67,12 +61,13 @@ bool transmit(const PreparedScene& prepared, const SurfacePoints& surfaces, std:
     const Vec3 view = surfaces.view[slot], normal = surfaces.normal[slot];
     const Vec3 position = surfaces.position[slot];
     Vec3 left(1);  // of the light on its way inside of the object that is left or not entered
-    if (material.absorbs && path.inside.contains(surfaces.object[slot]))
+    if (material.absorbs &&
+        path.inside.contains(prepared.medium_of(surfaces.object[slot], path.mirrored)))
         for (int c = 0; c < 3; ++c)
             left[c] = std::exp(-material.absorption[c] * surfaces.depth[slot]);
     Path through = path;
-    const double ratio =
-        cross_boundary(prepared, onward.media, through.inside, surfaces.object[slot]);
+    const Index medium = prepared.medium_of(surfaces.object[slot], path.mirrored);
+    const double ratio = cross_boundary(prepared, onward.media, through.inside, medium);
     const double cosine = -view.dot(normal);
     const double rest = 1 + ratio * ratio * (cosine * cosine - 1);
     if (std::abs(ratio - 1) < least_cosine) {
@@ -91,9 +86,76 @@ bool transmit(const PreparedScene& prepared, const SurfacePoints& surfaces, std:
     const double share = material.opacity < 1 ? 1 : 1 - surfaces.alpha[slot];
     Path back = path;
     ++back.level;
+    back.mirrored = true;
     back.weight *= left * share;
     onward.next.push(position, surfaces.reflected[slot].normalized(), back);
     return true;
+}
+
+// A normal in world space as one in the mesh's; not unit.
+Vec3 normal_to_mesh(const Matrix& to_world, const Vec3& n) {
+    const Matrix& m = to_world;  // the transpose: that of the inverse leads back
+    return {m[0][0] * n.x + m[0][1] * n.y + m[0][2] * n.z,
+            m[1][0] * n.x + m[1][1] * n.y + m[1][2] * n.z,
+            m[2][0] * n.x + m[2][1] * n.y + m[2][2] * n.z};
+}
+
+// The normal of a virtual mirror: in world space, or where vertices have textures of their own, in
+// that of the mesh.
+Vec3 displaced_normal(const PreparedScene& prepared, Index object, const Vec3& normal,
+                      const Vec3& offset) {
+    if (!prepared.displaces_in_mesh(object)) return (normal + offset).normalized();
+    const Vec3 there =
+        normal_to_mesh(prepared.scene.instances[object].transform, normal).normalized();
+    return prepared.facets->placed(object)
+        .normal_to_world((there + offset).normalized())
+        .normalized();
+}
+
+// The view mirrored by a displaced normal as POV-Ray does it (source/backend/render/trace.cpp of
+// 3.7, ComputeReflection): what would go into the surface is mirrored once more, by the normal that
+// was not displaced.
+Vec3 mirrored_by(const Vec3& view, const Vec3& displaced, const Vec3& normal) {
+    const Vec3 reflected = view - displaced * (2 * view.dot(displaced));
+    const double depth = reflected.dot(normal);
+    if (depth >= 0) return reflected;
+    if (reflected.dot(displaced) < 0) return view - normal * (2 * view.dot(normal));
+    return reflected - normal * (2 * depth);
+}
+
+// Pushes what one mirror of the surface point sends back; `share` as by its material alone.
+void reflect(const PreparedScene& prepared, const SurfacePoints& surfaces, std::size_t slot,
+             const Path& path, const Vec3& normal, Vec3 share, const Vec3& direction,
+             Onward onward) {
+    const PreparedMaterial& material = *surfaces.material[slot];
+    const double cosine = -surfaces.view[slot].dot(normal);
+    if (material.metallic > 0)
+        share *= metallic_tint(material.metallic, cosine, surfaces.tint[slot]);
+    share *= surfaces.alpha[slot];
+    if (material.fresnel) {
+        const Index medium = prepared.medium_of(surfaces.object[slot], path.mirrored);
+        share *= fresnel_reflectance(relative_index(prepared, path.inside, medium), cosine);
+    }
+    Path back = path;
+    ++back.level;
+    back.mirrored = true;
+    back.weight *= share;
+    onward.next.push(surfaces.position[slot], direction.normalized(), back);
+}
+
+// The same of every virtual mirror of a lobe, which counts as much as `share`.
+void reflect_by(const PreparedLobe& lobe, double share, const PreparedScene& prepared,
+                const SurfacePoints& surfaces, std::size_t slot, const Path& path, Onward onward) {
+    if (share == 0 || lobe.reflection == Vec3(0)) return;
+    const Vec3 each = lobe.reflection * (share / double(lobe.mirrors.size()));
+    const Vec3 view = surfaces.view[slot], normal = surfaces.normal[slot];
+    for (const Vec3& offset : lobe.mirrors) {
+        const Vec3 displaced =
+            offset == Vec3(0) ? normal
+                              : displaced_normal(prepared, surfaces.object[slot], normal, offset);
+        reflect(prepared, surfaces, slot, path, displaced, each,
+                mirrored_by(view, displaced, normal), onward);
+    }
 }
 
 }  // namespace
@@ -102,21 +164,20 @@ void scatter(const PreparedScene& prepared, const SurfacePoints& surfaces, std::
              const Path& path, Onward onward) {
     if (path.level >= onward.max_depth) return;
     const PreparedMaterial& material = *surfaces.material[slot];
-    const Vec3 position = surfaces.position[slot];
     const double alpha = surfaces.alpha[slot];
     bool total = false;  // internal reflection
     if ((!material.opaque || alpha == 0) && surfaces.transmittance[slot] != Vec3(0))
         total = transmit(prepared, surfaces, slot, path, onward);
     // Where the surface itself is opaque POV-Ray looks for no total reflection.
     if (!material.mirrors || alpha == 0 || (total && material.opacity < 1)) return;
-    Vec3 share = mirrored_share(surfaces, slot) * alpha;
-    if (material.fresnel)
-        share *= fresnel_reflectance(relative_index(prepared, path.inside, surfaces.object[slot]),
-                                     -surfaces.view[slot].dot(surfaces.normal[slot]));
-    Path back = path;
-    ++back.level;
-    back.weight *= share;
-    onward.next.push(position, surfaces.reflected[slot].normalized(), back);
+    const LobeMix& mix = surfaces.lobes[slot];
+    if (!material.blurs || path.mirrored)
+        return reflect(prepared, surfaces, slot, path, surfaces.normal[slot],
+                       reflection_of(material, mix), surfaces.reflected[slot], onward);
+    reflect_by(material.lobes[mix.first], 1 - mix.share, prepared, surfaces, slot, path, onward);
+    if (mix.share > 0)
+        reflect_by(material.lobes[mix.first + 1], mix.share, prepared, surfaces, slot, path,
+                   onward);
 }
 
 namespace {
@@ -144,17 +205,21 @@ MediumStack media_at(const PreparedScene& prepared, const Vec3& eye, Media& medi
     MediumStack inside;
     if (!prepared.bends) return inside;
     const Scene& scene = prepared.scene;
+    const auto enter = [&](Index object) {
+        media.toggle(inside, object);
+        const Index twin = prepared.medium_of(object, true);
+        if (twin != object) media.toggle(inside, twin);
+    };
     // Where the eye is out of reach of all facets there are none.
     for (Index i = 0; i < prepared.first_sphere() && !prepared.facets->empty(); ++i)
-        if (prepared.material_of(i).passes && encloses(prepared.facets->placed(i), eye))
-            media.toggle(inside, i);
+        if (prepared.material_of(i).passes && encloses(prepared.facets->placed(i), eye)) enter(i);
     for (std::size_t i = 0; i < scene.spheres.size(); ++i)
         if ((eye - scene.spheres[i].center).length() < scene.spheres[i].radius)
-            media.toggle(inside, prepared.first_sphere() + Index(i));
+            enter(prepared.first_sphere() + Index(i));
     // The inside of a plane is the side that its normal points away from.
     for (std::size_t i = 0; i < prepared.planes.size(); ++i)
         if (prepared.planes[i].frame.normal.dot(eye) < prepared.planes[i].distance)
-            media.toggle(inside, prepared.first_plane() + Index(i));
+            enter(prepared.first_plane() + Index(i));
     return inside;
 }
 

@@ -14,6 +14,7 @@ std::vector<Feature> features() {
     add("cameras", camera_features());
     add("lights", light_features());
     add("surfaces", surface_features());
+    add("rough mirrors", mirror_features());
     add("sides", side_features());
     add("textures", texture_features());
     add("maps", map_features());

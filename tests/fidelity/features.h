@@ -27,6 +27,7 @@ std::vector<Feature> camera_features();
 std::vector<Feature> light_features();
 std::vector<Feature> side_features();
 std::vector<Feature> surface_features();
+std::vector<Feature> mirror_features();
 std::vector<Feature> texture_features();
 std::vector<Feature> map_features();
 std::vector<Feature> transparency_features();

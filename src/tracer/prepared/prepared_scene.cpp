@@ -1,5 +1,6 @@
 #include "tracer/prepared/prepared_scene.h"
 
+#include "scene/vertex_textures.h"
 #include "tracer/prepared/scene_boxes.h"
 
 #include "penumbra/light_model.h"
@@ -11,12 +12,17 @@ namespace penumbra {
 
 namespace {
 
-PreparedLobe prepare(const SpecularLobe& lobe) {
+PreparedLobe prepare(const SpecularLobe& lobe, int mirrors) {
     // cos^N < 1e-9 changes no picture.
-    return {.specular = std::max(0.0F, lobe.specular),
-            .shininess = lobe.shininess,
-            .highlight_end = lobe.shininess > 0 ? std::pow(1e-9, 1 / double(lobe.shininess)) : 0,
-            .reflection = Vec3(lobe.reflection)};
+    PreparedLobe prepared = {
+        .specular = std::max(0.0F, lobe.specular),
+        .shininess = lobe.shininess,
+        .highlight_end = lobe.shininess > 0 ? std::pow(1e-9, 1 / double(lobe.shininess)) : 0,
+        .reflection = Vec3(lobe.reflection)};
+    prepared.mirrors.clear();
+    for (const VirtualMirror& mirror : virtual_mirrors(lobe.roughness, mirrors))
+        prepared.mirrors.push_back(mirror.offset);
+    return prepared;
 }
 
 PreparedMaterial prepare(const Material& m, const Color& ambient_light) {
@@ -35,11 +41,17 @@ PreparedMaterial prepare(const Material& m, const Color& ambient_light) {
                           .fresnel = m.fresnel,
                           .passes = !opaque(m) || m.sides == Sides::front,
                           .textured = std::holds_alternative<ImageMap>(m.pattern)};
+    f.blurs = blurs(m);
+    const int mirrors = f.blurs ? m.mirrors : 1;
     if (m.specular_lobes)
-        for (const SpecularLobe& lobe : m.specular_lobes->lobes) f.lobes.push_back(prepare(lobe));
+        for (const SpecularLobe& lobe : m.specular_lobes->lobes)
+            f.lobes.push_back(prepare(lobe, mirrors));
     else
-        f.lobes = {prepare(
-            {.specular = m.specular, .shininess = m.shininess, .reflection = m.reflection})};
+        f.lobes = {prepare({.specular = m.specular,
+                            .shininess = m.shininess,
+                            .reflection = m.reflection,
+                            .roughness = m.roughness},
+                           mirrors)};
     for (const PreparedLobe& lobe : f.lobes) {
         f.shines |= lobe.specular > 0;
         f.mirrors |= lobe.reflection != Vec3(0);
@@ -117,14 +129,16 @@ PreparedScene::PreparedScene(const Scene& given, const PreparedScene* earlier, b
         blended |= made.other != nullptr;
         bends |= made.passes && (made.ior != 1 || made.absorbs);
     }
+    for (const Mesh& mesh : scene.meshes)
+        own_textures.push_back(materials[mesh.material].blurs &&
+                               vertex_textures(mesh, scene.materials[mesh.material]).any());
     for (const Texture& t : scene.textures) textures.emplace_back(t);
     for (const Plane& plane : scene.planes) {
         const PlaneFrame frame = plane_frame(plane);
         planes.push_back({frame, frame.normal.dot(plane.point)});
     }
     lights = source_groups(scene.lights, planes);
-    const Index objects = first_plane() + Index(planes.size());
-    for (Index object = first_sphere(); object < objects; ++object)
+    for (Index object = first_sphere(); object < objects(); ++object)
         if (!material_of(object).opaque) translucent_shapes.push_back(object);
 }
 

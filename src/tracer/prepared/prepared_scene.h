@@ -20,6 +20,7 @@ struct PreparedLobe {
     double specular = 0, shininess = 0;
     double highlight_end = 0;  ///< below this cosine the highlight is nothing
     Vec3 reflection = Vec3(0);
+    std::vector<Vec3> mirrors = {Vec3(0)};  ///< displacements of the normal: see virtual_mirrors()
 };
 
 /// A Material with its float32 numbers widened and combined with the scene's.
@@ -35,6 +36,7 @@ struct PreparedMaterial {
     bool passes = false;  ///< rays may go on behind it: not opaque, or not there from behind
     bool textured = false;
     bool shines = false, mirrors = false;                ///< any lobe does
+    bool blurs = false;                                  ///< any lobe has several mirrors
     bool backlit = false;                                ///< shows light from behind
     std::shared_ptr<const PreparedMaterial> other = {};  ///< of its Blend
 };
@@ -75,6 +77,7 @@ struct PreparedScene {
     Bounds surroundings;  ///< of facets and spheres: their box, twice as large
     std::vector<PreparedMaterial> materials = {};  ///< by material
     std::vector<TextureLookup> textures = {};      ///< by texture
+    std::vector<char> own_textures = {};           ///< by mesh: its vertices have some, and blur
     std::vector<SourceGroup> lights = {};
     std::vector<PreparedPlane> planes = {};
     std::vector<Index> translucent_shapes = {};  ///< spheres and planes, as objects
@@ -95,6 +98,19 @@ struct PreparedScene {
     const PreparedMaterial& material_of(Index object) const {
         return materials[material_index(scene, object)];
     }
+    /// What a MediumStack holds of an object. To rays that were mirrored an object that blurs is
+    /// another one, of which they see a single mirror.
+    Index medium_of(Index object, bool mirrored) const {
+        return mirrored && material_of(object).blurs ? object + objects() : object;
+    }
+    const PreparedMaterial& material_in(Index medium) const {
+        return material_of(medium < objects() ? medium : medium - objects());
+    }
+    /// Are mirrors displaced in the space of the mesh, and not in that of the world?
+    bool displaces_in_mesh(Index object) const {
+        return object < first_sphere() && own_textures[scene.instances[object].mesh] != 0;
+    }
+    Index objects() const { return first_plane() + Index(planes.size()); }
     const Sphere& sphere(Index object) const { return scene.spheres[object - first_sphere()]; }
     const PreparedPlane& plane(Index object) const { return planes[object - first_plane()]; }
 };

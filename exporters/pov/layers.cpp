@@ -1,0 +1,216 @@
+#include "exporters/pov/layers.h"
+
+#include "exporters/pov/sdl.h"
+
+#include "penumbra/light_model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace penumbra::pov {
+
+namespace {
+
+using sdl::number;
+
+const Color black(0), white(1);
+
+Passing passing_of(const Material& m) {
+    const double through = 1 - double(m.opacity);
+    return {.filter = float(through * double(m.transmission)),
+            .transmit = m.transmission == 0 ? 1 - m.opacity
+                                            : float(through * (1 - double(m.transmission)))};
+}
+
+// Without ambient, diffuse and emission: what does not depend on the opacity.
+Finish gloss_of(const Material& m) {
+    return {.phong = m.specular,
+            .phong_size = m.shininess,
+            .metallic = m.metallic,
+            .reflection = m.reflection,
+            .reflection_metallic = m.metallic,
+            .fresnel = m.fresnel};
+}
+
+Finish finish_of(const Material& m) {
+    Finish finish = gloss_of(m);
+    finish.ambient = m.ambient;
+    finish.diffuse = m.diffuse;
+    return finish;
+}
+
+// POV-Ray multiplies `emission` by the pigment. True when dividing by it undoes that.
+bool divide_emission(const Color& pigment, const Color& emission, Color& quotient) {
+    for (int i = 0; i < 3; ++i) {
+        quotient[i] = emission[i] == 0 ? 0 : emission[i] / pigment[i];
+        if (!std::isfinite(quotient[i])) return false;
+        if (std::abs(quotient[i] * pigment[i] - emission[i]) > 1e-6F * emission[i]) return false;
+    }
+    return true;
+}
+
+// A layer that only adds light: all but transparent, and emitting the more for it. The layers below
+// lose a millionth.
+constexpr float veil = 1 / 1048576.0F;
+
+constexpr const char* glowing = "adds light: emits the more for being all but transparent";
+
+Layer glow(const Material& m) {
+    return {.pigment = color(white, {.transmit = 1 - veil}),
+            .finish = {.emission = m.emission * (m.opacity / veil)},
+            .note = glowing};
+}
+
+Layer image_glow(const Plan& plan, const Look& look, const Material& m) {
+    return {.pigment = image_map(plan, look, *m.emission_map, {.transmit = 1 - veil}),
+            .finish = {.emission = m.emission / veil},
+            .note = glowing};
+}
+
+// Light from behind in a colour of its own: `diffuse 0, b` of a layer that hides nothing. The
+// factor of an image is grey: see normalise().
+Layer back_light(const Plan& plan, const Look& look, const Material& m) {
+    const Passing passing = {.transmit = 1 - veil};
+    const auto& image = m.diffuse_transmission_map;
+    Layer layer{.note = "adds light from behind: scatters the more for being all but transparent"};
+    layer.pigment =
+        image ? image_map(plan, look, *image, passing) : color(m.diffuse_transmission, passing);
+    layer.finish.diffuse_behind = m.opacity / veil * (image ? m.diffuse_transmission.x : 1);
+    return layer;
+}
+
+// A surface whose pigment is one of POV-Ray's own.
+void add_simple_layers(const Plan& plan, const Look& look, const Material& m,
+                       std::vector<Layer>& layers) {
+    const Passing passing = passing_of(m);
+    const auto add = [&](const Finish& finish) {
+        layers.push_back({.pigment = look.tinted ? "" : pigment(plan, look, passing),
+                          .finish = finish,
+                          .tinted = look.tinted,
+                          .passing = passing});
+    };
+    Finish finish = finish_of(m);
+    if (m.emission == black || m.emission_map || m.opacity == 0) return add(finish);
+    if (std::holds_alternative<std::monostate>(m.pattern) && !look.tinted) {
+        if (divide_emission(m.color, m.emission, finish.emission)) return add(finish);
+        const bool unseen = m.color == black || (m.ambient == black && m.diffuse == 0);
+        if (unseen && m.metallic == 0 && m.transmission == 0) {
+            finish = gloss_of(m);
+            finish.emission = m.emission;
+            layers.push_back({.pigment = color(white, passing), .finish = finish});
+            return;
+        }
+    }
+    add(finish_of(m));
+    layers.push_back(glow(m));
+}
+
+// An image times a colour: the colour is a filter over the image.
+void add_product_layers(const Plan& plan, const Look& look, const Material& m,
+                        std::vector<Layer>& layers) {
+    Layer image{.pigment = pigment(plan, look, passing_of(m))};
+    image.finish.ambient = m.ambient;
+    image.finish.diffuse = m.diffuse;
+    layers.push_back(image);
+    layers.push_back({.pigment = fmt::format("rgbf <{}, {}, {}, 1>", number(m.color.x),
+                                             number(m.color.y), number(m.color.z)),
+                      .finish = m.metallic > 0 ? Finish{} : gloss_of(m),
+                      .tinted = look.tinted,
+                      .filter = true});
+    // The highlight of a metal takes the colour of the image, which needs a layer of its own.
+    if (m.metallic > 0)
+        layers.push_back({.pigment = image_pigment(plan, look, *std::get_if<ImageMap>(&m.pattern),
+                                                   {.transmit = 1}),
+                          .finish = gloss_of(m)});
+    if (m.emission != black && !m.emission_map && m.opacity != 0) layers.push_back(glow(m));
+}
+
+// Highlight and mirror in a colour of their own: a transparent layer that wears that colour. Light
+// passes it whole, and its phong and reflection are not scaled by that.
+Layer gloss_layer(const Plan& plan, const Look& look, const Material& m, const SpecularLobe& lobe,
+                  bool by_image) {
+    Material shown = m;
+    shown.specular = lobe.specular;
+    shown.shininess = lobe.shininess;
+    shown.reflection = lobe.reflection;
+    Layer layer{.finish = gloss_of(shown)};
+    if (m.specular_color) layer.finish.metallic = 1;
+    layer.pigment = by_image ? image_map(plan, look, m.specular_lobes->color, {.transmit = 1})
+                             : color(*m.specular_color, {.transmit = 1});
+    return layer;
+}
+
+}  // namespace
+
+namespace {
+
+// A rough mirror: transparent layers that reflect 1/n each, by displaced normals. POV-Ray adds what
+// they reflect, and filters it by no layer above.
+void add_mirrors(const Plan& plan, const Look& look, Layer gloss, const SpecularLobe& lobe,
+                 int count, std::vector<Layer>& layers) {
+    const std::vector<VirtualMirror> mirrors = virtual_mirrors(lobe.roughness, count);
+    const bool metal = gloss.finish.reflection_metallic > 0;
+    if (!metal) gloss.pigment = color(white, {.transmit = 1});
+    gloss.tinted = gloss.tinted && metal;
+    if (metal && gloss.tinted) gloss.passing = {.transmit = 1};
+    if (metal && !gloss.tinted && gloss.pigment.empty())
+        gloss.pigment = pigment(plan, look, {.transmit = 1});
+    gloss.filter = false;
+    gloss.finish = {.reflection = lobe.reflection * (1 / float(mirrors.size())),
+                    .reflection_metallic = gloss.finish.reflection_metallic,
+                    .fresnel = gloss.finish.fresnel};
+    gloss.note = "";
+    for (const VirtualMirror& mirror : mirrors) {
+        gloss.mirror = mirror;
+        layers.push_back(gloss);
+    }
+}
+
+}  // namespace
+
+std::vector<Layer> layers_of(const Plan& plan, const Look& look, std::size_t lobe) {
+    const Material& given = material_of(plan, look);
+    Material m = given;
+    const bool mesh = look.surface == Look::Surface::mesh;
+    const bool specular_lobes = m.specular_lobes && mesh;
+    const bool by_image = specular_lobes && m.specular_lobes->color.texture != no_index;
+    const SpecularLobe own = {m.specular, m.shininess, m.reflection, m.roughness};
+    SpecularLobe shown = specular_lobes ? m.specular_lobes->lobes[lobe] : own;
+    const SpecularLobe mirrored = shown;
+    const bool rough = !look.mirrored && blurs(given) && shown.roughness > 0;
+    if (rough) shown.reflection = black;
+    const bool own_color =
+        by_image || (m.specular_color && (shown.specular > 0 || shown.reflection != black));
+    const SpecularLobe base = own_color ? SpecularLobe{} : shown;
+    m.specular = base.specular;
+    m.shininess = base.shininess;
+    m.reflection = base.reflection;
+    if (own_color && !by_image) m.metallic = 0;
+    if (!mesh) {
+        m.emission_map.reset();
+        m.diffuse_transmission_map.reset();
+    }
+    const bool image = std::holds_alternative<ImageMap>(m.pattern);
+    std::vector<Layer> layers;
+    if (image && (look.tinted || m.color != white))
+        add_product_layers(plan, look, m, layers);
+    else
+        add_simple_layers(plan, look, m, layers);
+    if (m.emission_map && m.emission != black) layers.push_back(image_glow(plan, look, m));
+    if (m.diffuse_transmission != black && m.opacity > 0)
+        layers.push_back(back_light(plan, look, m));
+    if (own_color) layers.push_back(gloss_layer(plan, look, given, shown, by_image));
+    if (rough && mirrored.reflection != black) {
+        // The pigment that tints a metal's reflection.
+        Layer gloss{.finish = gloss_of(given), .tinted = look.tinted && !image};
+        if (own_color) gloss.pigment = gloss_layer(plan, look, given, shown, by_image).pigment;
+        if (own_color) gloss.tinted = false;
+        add_mirrors(plan, look, std::move(gloss), mirrored, given.mirrors, layers);
+    }
+    return layers;
+}
+
+}  // namespace penumbra::pov

@@ -1,0 +1,36 @@
+// Material -> the layers of a POV-Ray texture, as values.
+#pragma once
+
+#include "exporters/pov/pigment.h"
+
+#include "penumbra/light_model.h"
+
+#include <string>
+#include <vector>
+
+namespace penumbra::pov {
+
+/// POV-Ray's finish. What it leaves out has no effect: specular 0, brilliance 1.
+struct Finish {
+    Color ambient = Color(0), emission = Color(0);
+    float diffuse = 0, diffuse_behind = 0, phong = 0, phong_size = 40, metallic = 0;
+    Color reflection = Color(0);
+    float reflection_metallic = 0;
+    bool fresnel = false;
+};
+
+/// One of a stack of textures. Upper layers let a part of the lower ones through.
+struct Layer {
+    std::string pigment = {};  ///< what stands in pigment { }; of a tinted layer made for each tint
+    Finish finish = {};
+    bool tinted = false;    ///< the pigment is a vertex colour ...
+    bool filter = false;    ///< ... that multiplies the layers below it
+    const char* note = "";  ///< a comment
+    Passing passing = {};   ///< of the tinted pigment
+    VirtualMirror mirror = {};
+};
+
+/// The layers of a look that shows specular lobes lobe `lobe`, lowest first.
+std::vector<Layer> layers_of(const Plan& plan, const Look& look, std::size_t lobe = 0);
+
+}  // namespace penumbra::pov

@@ -1,0 +1,110 @@
+// Features: reflections that are the mean of several mirror images.
+#include "fidelity/features_stage.h"
+
+namespace test {
+namespace {
+
+const std::string gold = "color = [0.9, 0.6, 0.2]\nambient = 0\ndiffuse = 0.05\nspecular = 0\n"
+                         "reflection = 0.9\nmetallic = 1\n";
+const std::string plastic = "color = [0.1, 0.3, 0.6]\nreflection = 1\nfresnel = true\nior = 1.5\n";
+
+// With a sharp and a rough mirror around, which see the ball and one another.
+Stage stage(const std::string& rest) {
+    Stage stage = marked_stage();
+    stage.rest += "[[plane]]\npoint = [0, 0, -2.2]\nnormal = [0.15, 0, 1]\nmaterial = \"sharp\"\n"
+                  "[material.sharp]\ncolor = [0.2, 0.2, 0.25]\nreflection = 0.7\n"
+                  "[[sphere]]\ncenter = [-1.1, 0.35, 0.9]\nradius = 0.35\nmaterial = \"steel\"\n"
+                  "[material.steel]\ncolor = [0.6, 0.6, 0.65]\ndiffuse = 0.1\nreflection = 0.8\n"
+                  "metallic = 1\nroughness = 0.35\n" +
+                  rest;
+    return stage;
+}
+
+Feature worn(const std::string& name, const std::string& material) {
+    return staged(name, stage(ball_of(material)));
+}
+
+// The surface of a glTF body, placed so that its space is turned and stretched, with the keys of a
+// sidecar laid over it.
+Feature modelled(const std::string& name, Gltf gltf, const std::string& material) {
+    gltf.root["materials"][0]["name"] = "surface";
+    gltf.root["nodes"][0]["rotation"] = {0.1, 0.3, 0.2, 0.927};
+    gltf.root["nodes"][0]["scale"] = {1.1, 0.7, 0.9};
+    return staged(name, gltf, stage("[material.surface]\n" + material));
+}
+
+Gltf body(const Shape& shape, bool two_sided = true) {
+    return showing(shape, {{"doubleSided", two_sided}});
+}
+
+Gltf colored(const Shape& shape) {
+    Gltf gltf = body(shape);
+    gltf.root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+        gltf.accessor("VEC3", colors_of(shape));
+    return gltf;
+}
+
+Gltf faded() {
+    const Shape shape = egg();
+    Gltf gltf = body(shape);
+    std::vector<float> colors;
+    for (std::size_t i = 0; i < shape.vertices(); ++i)
+        colors.insert(colors.end(), {1, 0.8F, 0.5F, 0.2F + 0.2F * float(i / 3 % 5)});
+    gltf.root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+        gltf.accessor("VEC4", colors);
+    gltf.root["materials"][0]["alphaMode"] = "BLEND";
+    return gltf;
+}
+
+Feature masked() {
+    Gltf gltf = body(board());
+    gltf.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] =
+        texture(gltf, "picture.png");
+    gltf.root["materials"][0]["alphaMode"] = "MASK";
+    Feature feature = modelled("rough mirror, alpha mask", std::move(gltf),
+                               "reflection = 0.6\nroughness = 0.4\n");
+    feature.files["picture.png"] = png(4);
+    return feature;
+}
+
+Feature textured() {
+    Gltf gltf = body(egg());
+    gltf.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] =
+        texture(gltf, "picture.png");
+    Feature feature =
+        modelled("rough metal, textured", std::move(gltf), gold + "roughness = 0.4\n");
+    feature.files["picture.png"] = png();
+    return feature;
+}
+
+}  // namespace
+
+std::vector<Feature> mirror_features() {
+    return {
+        worn("rough mirror", "reflection = [0.8, 0.6, 0.5]\nroughness = 0.3\n"),
+        worn("rough dielectric", plastic + "roughness = 0.5\n"),
+        worn("rough metal", gold + "roughness = 0.6\n"),
+        worn("rough metal, very", gold + "roughness = 1\n"),
+        worn("rough metal, 13 mirrors", gold + "roughness = 0.4\nmirrors = 13\n"),
+        worn("rough metal, 19 mirrors", gold + "roughness = 0.4\nmirrors = 19\n"),
+        worn("rough metal, 32 mirrors", gold + "roughness = 0.4\nmirrors = 32\n"),
+        worn("rough metal, checker",
+             gold + "roughness = 0.3\n"
+                    "checker = { colors = [[0.8, 0.7, 0.2], [0.1, 0.2, 0.4]], size = 0.37 }\n"),
+        worn("rough mirror of a coloured highlight",
+             "reflection = 0.7\nspecular_color = [1, 0.4, 0.3]\nmetallic = 1\n"
+             "roughness = 0.3\n"),
+        worn("see-through and rough: sharp", "reflection = 0.3\nroughness = 0.4\n"
+                                             "opacity = 0.5\n"),
+        modelled("rough dielectric, smooth body", body(egg()), plastic + "roughness = 0.4\n"),
+        modelled("rough dielectric, flat facets", body(rock()), plastic + "roughness = 0.4\n"),
+        modelled("rough metal, single-sided", body(egg(), false), gold + "roughness = 0.4\n"),
+        modelled("rough metal, vertex colours", colored(egg()), gold + "roughness = 0.4\n"),
+        modelled("rough dielectric, vertex colours", colored(rock()),
+                 plastic + "roughness = 0.4\n"),
+        modelled("rough mirror, alpha of vertices", faded(), "reflection = 0.6\nroughness = 0.4\n"),
+        masked(),
+        textured()};
+}
+
+}  // namespace test
