@@ -147,8 +147,8 @@ Layer gloss_layer(const Plan& plan, const Look& look, const Material& m, const S
 
 namespace {
 
-// A rough mirror: transparent layers that reflect 1/n each, by displaced normals. POV-Ray adds what
-// they reflect, and filters it by no layer above.
+// Transparent layers that reflect 1/n each, by displaced normals if there are several. POV-Ray adds
+// what they reflect, and filters it by no layer above.
 void add_mirrors(const Plan& plan, const Look& look, Layer gloss, const SpecularLobe& lobe,
                  int count, std::vector<Layer>& layers) {
     const std::vector<VirtualMirror> mirrors = virtual_mirrors(lobe.roughness, count);
@@ -161,12 +161,35 @@ void add_mirrors(const Plan& plan, const Look& look, Layer gloss, const Specular
     gloss.filter = false;
     gloss.finish = {.reflection = lobe.reflection * (1 / float(mirrors.size())),
                     .reflection_metallic = gloss.finish.reflection_metallic,
-                    .fresnel = gloss.finish.fresnel};
+                    .fresnel = gloss.finish.fresnel,
+                    .conserve_energy = gloss.finish.conserve_energy};
     gloss.note = "";
     for (const VirtualMirror& mirror : mirrors) {
         gloss.mirror = mirror;
         layers.push_back(gloss);
     }
+}
+
+// The clear coat: mirrors, and above them, where no normal is displaced, its highlight.
+void add_coat(const Look& look, const Material& m, std::vector<Layer>& layers) {
+    const Coat& coat = *m.coat;
+    const bool sharp = look.mirrored || m.opacity < 1;
+    const auto mirrors = virtual_mirrors(sharp ? 0 : coat.roughness, coat.mirrors);
+    const float part = 1 / float(mirrors.size());
+    Layer layer{.pigment = color(white, {.transmit = 1})};
+    if (penumbra::mirrors(coat)) {
+        layer.finish = {.reflection = Color(coat.reflection * part),
+                        .grazing = coat.grazing * part,
+                        .conserve_energy = m.opacity >= 1};
+        for (const VirtualMirror& mirror : mirrors) {
+            layer.mirror = mirror;
+            layers.push_back(layer);
+        }
+    }
+    layer.mirror = {};
+    layer.finish = {.phong = coat.specular, .phong_size = coat.shininess};
+    if (coat.specular > 0) layers.push_back(layer);
+    layers[layers.size() - 1].note = "a clear coat";
 }
 
 }  // namespace
@@ -179,9 +202,11 @@ std::vector<Layer> layers_of(const Plan& plan, const Look& look, std::size_t lob
     const bool by_image = specular_lobes && m.specular_lobes->color.texture != no_index;
     const SpecularLobe own = {m.specular, m.shininess, m.reflection, m.roughness};
     SpecularLobe shown = specular_lobes ? m.specular_lobes->lobes[lobe] : own;
-    const SpecularLobe mirrored = shown;
-    const bool rough = !look.mirrored && blurs(given) && shown.roughness > 0;
-    if (rough) shown.reflection = black;
+    SpecularLobe mirrored = shown;
+    const bool takes = takes_reflected(given);
+    if (look.mirrored || !blurs(given)) mirrored.roughness = 0;
+    const bool above = mirrored.reflection != black && (takes || mirrored.roughness > 0);
+    if (above) shown.reflection = black;
     const bool own_color =
         by_image || (m.specular_color && (shown.specular > 0 || shown.reflection != black));
     const SpecularLobe base = own_color ? SpecularLobe{} : shown;
@@ -203,13 +228,15 @@ std::vector<Layer> layers_of(const Plan& plan, const Look& look, std::size_t lob
     if (m.diffuse_transmission != black && m.opacity > 0)
         layers.push_back(back_light(plan, look, m));
     if (own_color) layers.push_back(gloss_layer(plan, look, given, shown, by_image));
-    if (rough && mirrored.reflection != black) {
+    if (above) {
         // The pigment that tints a metal's reflection.
         Layer gloss{.finish = gloss_of(given), .tinted = look.tinted && !image};
         if (own_color) gloss.pigment = gloss_layer(plan, look, given, shown, by_image).pigment;
         if (own_color) gloss.tinted = false;
+        gloss.finish.conserve_energy = takes;
         add_mirrors(plan, look, std::move(gloss), mirrored, given.mirrors, layers);
     }
+    if (given.coat) add_coat(look, given, layers);
     return layers;
 }
 

@@ -5,6 +5,7 @@
 
 #include "penumbra/light_model.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct Finish {
     Color reflection = Color(0);
     float reflection_metallic = 0;
     bool fresnel = false;
+    std::optional<float> grazing = {};  ///< reflection along the surface: Schlick's curve
+    bool conserve_energy = false;       ///< what it reflects is taken from the layers below
 };
 
 /// One of a stack of textures. Upper layers let a part of the lower ones through.

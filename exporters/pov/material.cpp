@@ -25,6 +25,10 @@ std::string item(const char* name, const Color& c) {
 }
 
 std::string reflection_text(const Finish& f, bool explicitly) {
+    if (f.grazing)
+        return fmt::format("reflection {{ {}, {} falloff 5{} }}", sdl::color(f.reflection),
+                           sdl::color(Color(*f.grazing)),
+                           explicitly ? " fresnel off metallic 0 exponent 1" : "");
     if (f.reflection == black) return "reflection 0";
     std::string text =
         "reflection { " + std::string(f.fresnel ? "rgb 0, " : "") + sdl::color(f.reflection);
@@ -42,6 +46,7 @@ std::string finish_text(const Plan& plan, const Finish& f, const char* indent) {
     std::string rest;
     if (explicitly)
         rest = fmt::format("{0}  specular 0 brilliance 1 crand 0 irid {{ 0 }}\n", indent);
+    if (f.conserve_energy) rest += fmt::format("{}  conserve_energy\n", indent);
     return fmt::format("finish {{\n{0}  {1} {2} diffuse {3}{4}\n{0}  {5}\n{0}  {6}\n{7}{0}}}",
                        indent, item("ambient", f.ambient), item("emission", f.emission),
                        number(f.diffuse),

@@ -289,6 +289,9 @@ struct Planner {
             lose({Loss::approximated, m.name,
                   "highlights and reflections of the textured metal take no "
                   "vertex colours: approximate"});
+        if (look.tinted && takes_reflected(m) && m.metallic > 0 && !own_tint)
+            lose({Loss::approximated, m.name,
+                  "vertex colours tint what its reflection takes from the light that it scatters"});
         if (product && m.opacity < 1)
             lose({Loss::approximated, m.name,
                   "vertex colours over a translucent texture also "

@@ -78,6 +78,11 @@ void read_pigment(Section& section, Material& material, Scene& scene, TextureFil
         material.pattern = {};
 }
 
+void read_mirrors(Section& section, int& mirrors) {
+    section.read("mirrors", mirrors, {.low = 1, .high = 32});
+    if (!is_mirror_count(mirrors)) section.reject("mirrors", "must be 1, 7, 13, 19 or 32");
+}
+
 // absorption = { color = [0.9, 0.5, 0.5], distance = 1 }, or false.
 void read_absorption(Section& section, Material& material) {
     if (section.is_false("absorption")) {
@@ -96,6 +101,26 @@ void read_absorption(Section& section, Material& material) {
     material.absorption = absorption;
 }
 
+// coat = { reflection = 0.04, grazing = 1, roughness = 0.1, specular = 0.5, shininess = 200 }, or
+// false.
+void read_coat(Section& section, Material& material) {
+    if (section.is_false("coat")) {
+        material.coat.reset();
+        return;
+    }
+    auto inner = section.table("coat");
+    if (!inner) return;
+    Coat coat = material.coat.value_or(Coat{.reflection = 0.04F, .grazing = 1});
+    inner->read("reflection", coat.reflection, fraction);
+    inner->read("grazing", coat.grazing, fraction);
+    inner->read("roughness", coat.roughness, fraction);
+    read_mirrors(*inner, coat.mirrors);
+    inner->read("specular", coat.specular, non_negative);
+    inner->read("shininess", coat.shininess, non_negative);
+    inner->finish();
+    material.coat = coat;
+}
+
 void read_material(Section& section, Material& material, Scene& scene, TextureFiles& files) {
     read_pigment(section, material, scene, files);
     section.read_factor("ambient", material.ambient);
@@ -107,8 +132,8 @@ void read_material(Section& section, Material& material, Scene& scene, TextureFi
     if (section.read_color("specular_color", highlight)) material.specular_color = highlight;
     section.read_factor("reflection", material.reflection);
     section.read("roughness", material.roughness, fraction);
-    section.read("mirrors", material.mirrors, {.low = 1, .high = 32});
-    if (!is_mirror_count(material.mirrors)) section.reject("mirrors", "must be 1, 7, 13, 19 or 32");
+    read_mirrors(section, material.mirrors);
+    section.read("conserve_energy", material.conserve_energy);
     section.read_color("emission", material.emission);
     section.read_factor("diffuse_transmission", material.diffuse_transmission);
     section.read("opacity", material.opacity, fraction);
@@ -116,6 +141,7 @@ void read_material(Section& section, Material& material, Scene& scene, TextureFi
     section.read("ior", material.ior, positive);
     section.read("fresnel", material.fresnel);
     read_absorption(section, material);
+    read_coat(section, material);
     section.read("smooth", material.smooth);
     section.read("sides", material.sides, sides);
     section.finish();

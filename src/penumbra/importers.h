@@ -2,6 +2,7 @@
 #pragma once
 
 #include "penumbra/error.h"
+#include "penumbra/light_model.h"
 #include "penumbra/prepare.h"
 #include "penumbra/render_options.h"
 #include "penumbra/scene.h"
@@ -53,6 +54,9 @@ struct ModelOptions {
     std::string animation = {};  ///< name or number; empty: the first
     /// Seconds, finite; without it and `animation` the nodes' own pose.
     std::optional<double> time = {};
+    /// Where the light will come from: surfaces of metalness and roughness are imitated in another
+    /// way by few lamps than by an environment.
+    Surroundings surroundings = Surroundings::lamps;
     /// Folders below which a model may name files, besides its own. A model in memory has none of
     /// its own.
     std::vector<std::filesystem::path> allowed_paths = {};

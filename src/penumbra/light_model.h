@@ -46,6 +46,12 @@ bool is_mirror_count(int count);
 /// where it is sharp. Precondition: is_mirror_count(count).
 std::vector<VirtualMirror> virtual_mirrors(float roughness, int count);
 
+/// Does Material::conserve_energy do anything?
+bool takes_reflected(const Material& material);
+
+/// Does the coat reflect?
+bool mirrors(const Coat& coat);
+
 /// Has the material a reflection of several mirrors? Light that was mirrored once sees a single one
 /// in its place, so that rays grow by the mirrors' number and not by its powers.
 bool blurs(const Material& material);
@@ -86,9 +92,14 @@ struct View {
 /// Precondition: defects() finds nothing in `camera`, and width and height are at least 1.
 View view_of(const Camera& camera, int width, int height);
 
-/// Phong terms that imitate a glTF metallic-roughness surface; `base` is its base colour and `f0`
-/// the dielectric reflectance at normal incidence (0.04 for ior 1.5). An approximation: a least
-/// squares fit of the Phong lobe to GGX. Sets diffuse, specular, shininess, metallic, reflection.
-void set_metallic_roughness(Material& material, float metallic, float roughness, float f0 = 0.04F);
+/// Where the light of a scene comes from: a few lamps in the dark, or all around.
+enum class Surroundings { lamps, environment };
+
+/// Phong terms that imitate a glTF metallic-roughness surface; material.color is its base colour
+/// and `f0` the dielectric reflectance at normal incidence (0.04 for ior 1.5). An approximation: a
+/// least squares fit to GGX. Sets diffuse, specular, shininess, metallic, reflection, roughness,
+/// conserve_energy and specular_color.
+void set_metallic_roughness(Material& material, float metallic, float roughness, float f0 = 0.04F,
+                            Surroundings surroundings = Surroundings::lamps);
 
 }  // namespace penumbra

@@ -132,6 +132,19 @@ struct Absorption {
 /// sides.
 enum class Sides { both, front };
 
+/// A clear layer over a surface, with mirror and highlight of its own, both colourless. The mirror
+/// reflects r + (g - r)(1 - N.V)^5 (Schlick 1994, "An Inexpensive BRDF Model for Physically-based
+/// Rendering") and is blurred as Material::roughness blurs; what it reflects is taken from the
+/// terms of the surface below but reflection and what lies behind.
+struct Coat {
+    float specular = 0, shininess = 40;
+    float reflection = 0;  ///< r, at normal incidence
+    float grazing = 0;     ///< g, along the surface
+    float roughness = 0;
+    int mirrors = 7;
+    bool operator==(const Coat&) const = default;
+};
+
 /// A Phong surface. Every number is kept in float32, as POV-Ray keeps it.
 struct Material {
     std::string name = {};
@@ -148,7 +161,10 @@ struct Material {
     /// [0, 1], of the reflection: it is the mean of `mirrors` mirror images by displaced normals,
     /// see virtual_mirrors(). Of opaque surfaces; of others it is sharp.
     float roughness = 0;
-    int mirrors = 7;            ///< 1 (sharp), 7, 13, 19 or 32
+    int mirrors = 7;  ///< 1 (sharp), 7, 13, 19 or 32
+    /// What the mirrors reflect is taken from the other terms but what lies behind: they are
+    /// multiplied by 1 - reflectance for each mirror. Of opaque surfaces without `fresnel`.
+    bool conserve_energy = false;
     Color emission = Color(0);  ///< radiance, not multiplied by P
     /// K_T per channel, not multiplied by P: light from behind that is scattered to the eye.
     Color diffuse_transmission = Color(0);
@@ -158,6 +174,7 @@ struct Material {
     bool fresnel = false;    ///< reflection is multiplied by Fresnel's term of `ior`
     bool smooth = true;      ///< interpolate normals if the mesh has them
     std::optional<Absorption> absorption = {};
+    std::optional<Coat> coat = {};
     // Of meshes only:
     Sides sides = Sides::both;
     std::optional<ImageMap> emission_map = {};  ///< times `emission`; the surface must be opaque

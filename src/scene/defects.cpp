@@ -51,6 +51,12 @@ struct Examiner {
         require(m.roughness >= 0 && m.roughness <= 1, who + " has a roughness outside [0, 1]");
         require(is_mirror_count(m.mirrors),
                 who + " has a number of mirrors that is not 1, 7, 13, 19 or 32");
+        if (m.coat)
+            require(m.coat->roughness >= 0 && m.coat->roughness <= 1 &&
+                        is_mirror_count(m.coat->mirrors) && finite(m.coat->specular) &&
+                        finite(m.coat->shininess) && finite(m.coat->reflection) &&
+                        finite(m.coat->grazing),
+                    who + " has a coat with a number out of range");
         require(m.ior > 0 && finite(m.ior),
                 who + " has an index of refraction that is not positive");
         maps(m, who);

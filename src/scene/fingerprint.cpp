@@ -101,16 +101,21 @@ class Hasher {
         const auto& [color, distance] = absorption;
         add_all(color, distance);
     }
+    void add(const Coat& coat) {
+        const auto& [specular, shininess, reflection, grazing, roughness, mirrors] = coat;
+        add_all(specular, shininess, reflection, grazing, roughness, mirrors);
+    }
     void add(const Material& material) {
         const auto& [name, color, pattern, ambient, diffuse, specular, shininess, metallic,
-                     specular_color, reflection, roughness, mirrors, emission, diffuse_transmission,
-                     opacity, transmission, ior, fresnel, smooth, absorption, sides, emission_map,
-                     diffuse_transmission_map, alpha_map, specular_lobes, normal_map, blend] =
-            material;
+                     specular_color, reflection, roughness, mirrors, conserve_energy, emission,
+                     diffuse_transmission, opacity, transmission, ior, fresnel, smooth, absorption,
+                     coat, sides, emission_map, diffuse_transmission_map, alpha_map, specular_lobes,
+                     normal_map, blend] = material;
         add_all(name, color, pattern, ambient, diffuse, specular, shininess, metallic,
-                specular_color, reflection, roughness, mirrors, emission, diffuse_transmission,
-                opacity, transmission, ior, fresnel, smooth, absorption, sides, emission_map,
-                diffuse_transmission_map, alpha_map, specular_lobes, normal_map, blend);
+                specular_color, reflection, roughness, mirrors, conserve_energy, emission,
+                diffuse_transmission, opacity, transmission, ior, fresnel, smooth, absorption, coat,
+                sides, emission_map, diffuse_transmission_map, alpha_map, specular_lobes,
+                normal_map, blend);
     }
     void add(const Tangent& tangent) {
         const auto& [direction, handedness] = tangent;

@@ -36,32 +36,87 @@ namespace penumbra {
 // half in its strongest channel; between these a surface turns from one law to the other. So the
 // same gold as a metal, by an index of 0 (infinite) and by specular-glossiness is the same surface.
 
+// All of that is for a few lamps in the dark: then the even part of a metal stands for surroundings
+// that are not there. Where light comes from all around (Surroundings::environment) nothing has to
+// stand for it, and what is reflected, all of it, is split over three terms of which each has the
+// albedo 1 by itself:
+//
+// mirror      s, blurred by virtual mirrors of the roughness: what has a shape in the reflection.
+// highlight   h = min(0.2, 4 r^2), K_S = h (n + 1) / 2, n = 1.25 / a^2 - 1: the lobe of the
+//             environment's sources. It falls below the horizon at grazing angles, by up to a half,
+//             so that no more than 0.2 lets a white rough metal in a white environment keep 0.9.
+// even        e = min(1, 1.3 r^2), s = 1 - h - e. Least squares of the sRGB values of spheres in
+//             three environments (studio, overcast, lamps at night) against multiple-scattering GGX
+//             (energy by its directional albedo), with the mirrors as they are and h <= 0.2.
+//
+// The reflectance F at normal incidence tints mirror and highlight as Material::specular_color with
+// metallic = 1; the curve of that tint rises to 1 in grazing light much as Schlick's does. What is
+// not metal loses by Material::conserve_energy what the mirror reflects; it scatters (1 - F) of its
+// base colour and the even part of F.
+
 // A mirror image fainter than this is left out: nobody sees it, but it would cost a ray.
 constexpr double faintest = 0.004;
 
-RoughnessLobe lobe_of_roughness(double roughness) {
+namespace {
+
+constexpr double sharpest = 0.1;  // of mirrors that are blurred: below nobody sees it
+
+RoughnessLobe lobe_of_surroundings(double r, double a) {
+    const double lobe = std::min(0.2, 4 * r * r), even = std::min(1.0, 1.3 * r * r);
+    const double highlight = std::min(lobe, 1 - even), sharp = 1 - even - highlight;
+    const double exponent = std::clamp(1.25 / (a * a) - 1, 1.0, 10000.0);
+    return {.highlight = highlight * (exponent + 1) / 2,
+            .exponent = exponent,
+            .sharp = sharp < 0.02 ? 0 : sharp,
+            .roughness = r < sharpest ? 0 : r,
+            .even = even,
+            .surroundings = Surroundings::environment};
+}
+
+}  // namespace
+
+RoughnessLobe lobe_of_roughness(double roughness, Surroundings surroundings) {
     const double r = std::clamp(roughness, 0.0, 1.0);
     const double a = std::pow(std::max(r, 0.045), 2);
+    if (surroundings == Surroundings::environment) return lobe_of_surroundings(r, a);
     return {.highlight = 1 / (4 * a * a),
             .exponent = std::clamp(0.676 / (a * a) - 1.17, 1.0, 10000.0),
             .sharp = std::pow(std::max(0.0, 1 - r / 0.6), 2)};
 }
 
 double scattered(const RoughnessLobe& shape, double metallic, double f0, double highlight) {
+    if (shape.surroundings == Surroundings::environment)
+        return (1 - metallic) * (1 - f0) + metallic * shape.even;
     const double lobe = 2 * highlight / (shape.exponent + 1), blurred = 1 - shape.sharp;
     return (1 - metallic) * (1 - f0) + blurred * std::max(0.0, metallic * blurred - lobe);
 }
 
-SpecularLobe full_lobe(double roughness, double limit, double strongest) {
-    const RoughnessLobe shape = lobe_of_roughness(roughness);
+SpecularLobe full_lobe(double roughness, double limit, double strongest,
+                       Surroundings surroundings) {
+    const RoughnessLobe shape = lobe_of_roughness(roughness, surroundings);
+    if (surroundings == Surroundings::environment)
+        return {.specular = float(shape.highlight),
+                .shininess = float(shape.exponent),
+                .reflection = Color(float(shape.sharp)),
+                .roughness = float(shape.roughness)};
     const bool mirrors = strongest * shape.sharp >= faintest;
     return {.specular = float(std::min(shape.highlight, limit)),
             .shininess = float(shape.exponent),
             .reflection = Color(mirrors ? float(shape.sharp) : 0.0F)};
 }
 
+Coat clear_coat(double part, double roughness) {
+    constexpr double f0 = 0.04;
+    const RoughnessLobe shape = lobe_of_roughness(roughness, Surroundings::environment);
+    return {.specular = float(part * f0 * shape.highlight),
+            .shininess = float(shape.exponent),
+            .reflection = float(part * f0 * shape.sharp),
+            .grazing = float(part * shape.sharp),
+            .roughness = float(shape.roughness)};
+}
+
 void add_coat(SpecularLobe& lobe, double f0, double roughness) {
-    const RoughnessLobe shape = lobe_of_roughness(roughness);
+    const RoughnessLobe shape = lobe_of_roughness(roughness, Surroundings::lamps);
     if (f0 * shape.sharp >= faintest) lobe.reflection += Color(float(f0 * shape.sharp));
     const float highlight = float(std::min(f0 * shape.highlight, 1.0));
     if (highlight <= lobe.specular) return;
@@ -79,6 +134,7 @@ double largest(const Color& c) { return double(std::max({c.x, c.y, c.z})); }
 
 // What the lobe of a metal leaves to be scattered, in its tint.
 double beside_lobe(const RoughnessLobe& shape, double highlight) {
+    if (shape.surroundings == Surroundings::environment) return shape.even;
     const double blurred = 1 - shape.sharp;
     return blurred * std::max(0.0, blurred - 2 * highlight / (shape.exponent + 1));
 }
@@ -131,14 +187,34 @@ void set_scattered(Material& material, const RoughnessLobe& shape, double metall
                          : base + (dielectric.tint() - base) * float(share * (1 - metallic));
 }
 
+// In light from all around.
+void set_surrounded(Material& material, double metallic, double roughness,
+                    const DielectricReflectance& dielectric) {
+    const RoughnessLobe shape = lobe_of_roughness(roughness, Surroundings::environment);
+    const Color base = material.color;
+    material.specular = float(shape.highlight);
+    material.shininess = float(shape.exponent);
+    material.reflection = Color(float(shape.sharp));
+    material.roughness = float(shape.roughness);
+    material.metallic = 1;
+    material.specular_color.reset();
+    material.conserve_energy = metallic == 0 && dielectric.metal == 0;
+    if (metallic < 1)
+        material.specular_color = dielectric.f0 + (base - dielectric.f0) * float(metallic);
+    set_scattered(material, shape, metallic, dielectric, 0);
+}
+
 }  // namespace
 
 void set_metallic_roughness(Material& material, float metallic, float roughness,
-                            const DielectricReflectance& dielectric) {
+                            const DielectricReflectance& dielectric, Surroundings surroundings) {
     const double m = std::clamp(double(metallic), 0.0, 1.0);
+    if (surroundings == Surroundings::environment)
+        return set_surrounded(material, m, double(roughness), dielectric);
     if (dielectric.plain() || m == 1)
-        return set_metallic_roughness(material, metallic, roughness, float(largest(dielectric.f0)));
-    const RoughnessLobe shape = lobe_of_roughness(double(roughness));
+        return set_metallic_roughness(material, metallic, roughness, float(largest(dielectric.f0)),
+                                      surroundings);
+    const RoughnessLobe shape = lobe_of_roughness(double(roughness), surroundings);
     const double strength = dielectric.strength() + m * (1 - dielectric.strength());
     const Color reflected = dielectric.f0 + (material.color - dielectric.f0) * float(m);
     const double highlight = std::min(strength * shape.highlight, 1.0);
@@ -152,10 +228,14 @@ void set_metallic_roughness(Material& material, float metallic, float roughness,
     set_scattered(material, shape, m, dielectric, highlight);
 }
 
-void set_metallic_roughness(Material& material, float metallic, float roughness, float f0) {
+void set_metallic_roughness(Material& material, float metallic, float roughness, float f0,
+                            Surroundings surroundings) {
     const double m = std::clamp(double(metallic), 0.0, 1.0);
     const double dielectric = std::clamp(double(f0), 0.0, 1.0);
-    const RoughnessLobe shape = lobe_of_roughness(double(roughness));
+    if (surroundings == Surroundings::environment)
+        return set_surrounded(material, m, double(roughness),
+                              dielectric_reflectance(Color(float(dielectric))));
+    const RoughnessLobe shape = lobe_of_roughness(double(roughness), surroundings);
 
     // F over the tint, for one channel of the base colour.
     const auto untinted = [&](double base) {

@@ -1,6 +1,7 @@
 // Metallic-roughness -> the terms of a Phong surface, for one point of it.
 #pragma once
 
+#include "penumbra/light_model.h"
 #include "penumbra/scene.h"
 
 #include <optional>
@@ -12,8 +13,11 @@ struct RoughnessLobe {
     double highlight = 0;  ///< K_S of a surface that reflects all, not limited
     double exponent = 1;   ///< N
     double sharp = 0;      ///< the part of what is reflected that is seen as a mirror image
+    double roughness = 0;  ///< of that image: see Material::roughness
+    double even = 0;       ///< the part that a metal scatters evenly, where light is all around
+    Surroundings surroundings = Surroundings::lamps;
 };
-RoughnessLobe lobe_of_roughness(double roughness);
+RoughnessLobe lobe_of_roughness(double roughness, Surroundings surroundings);
 
 /// What a surface that is not metal reflects at normal incidence.
 struct DielectricReflectance {
@@ -38,17 +42,20 @@ Color scattered_color(const RoughnessLobe& shape, const Color& base, double meta
 /// As in light_model.h, for any reflectance. One that is part of a metal adds to material.color,
 /// which must be all of the base colour then.
 void set_metallic_roughness(Material& material, float metallic, float roughness,
-                            const DielectricReflectance& dielectric);
+                            const DielectricReflectance& dielectric, Surroundings surroundings);
 
 /// K_D: how much of the base colour is scattered evenly. `highlight` is K_S over the base colour.
 double scattered(const RoughnessLobe& shape, double metallic, double f0, double highlight);
 
 /// Highlight and mirror of a surface that reflects all, to be tinted by what it does reflect, which
 /// is at most `strongest`. The highlight is at most `limit`.
-SpecularLobe full_lobe(double roughness, double limit, double strongest);
+SpecularLobe full_lobe(double roughness, double limit, double strongest, Surroundings surroundings);
 
 /// Lays a clear coat of the reflectance `f0` over `lobe`: its mirror image is added, of the two
 /// highlights the stronger one stays.
 void add_coat(SpecularLobe& lobe, double f0, double roughness);
+
+/// A clear coat of ior 1.5 that covers a part of the surface, in light from all around.
+Coat clear_coat(double part, double roughness);
 
 }  // namespace penumbra

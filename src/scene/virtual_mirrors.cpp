@@ -98,12 +98,22 @@ std::vector<VirtualMirror> virtual_mirrors(float roughness, int count) {
     return mirrors;
 }
 
+bool takes_reflected(const Material& material) {
+    return material.conserve_energy && material.opacity >= 1 && !material.fresnel;
+}
+
+bool mirrors(const Coat& coat) { return coat.reflection > 0 || coat.grazing > 0; }
+
 bool blurs(const Material& material) {
     const auto rough = [](const Color& reflection, float roughness) {
         return reflection != Color(0) && roughness > 0;
     };
     if (material.blend && blurs(material.blend->other.front())) return true;
-    if (material.mirrors == 1 || material.opacity < 1) return false;
+    if (material.opacity < 1) return false;
+    if (const auto& coat = material.coat;
+        coat && mirrors(*coat) && coat->roughness > 0 && coat->mirrors > 1)
+        return true;
+    if (material.mirrors == 1) return false;
     if (!material.specular_lobes) return rough(material.reflection, material.roughness);
     return std::ranges::any_of(material.specular_lobes->lobes, [&](const SpecularLobe& lobe) {
         return rough(lobe.reflection, lobe.roughness);

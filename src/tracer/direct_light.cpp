@@ -1,5 +1,6 @@
 #include "tracer/direct_light.h"
 
+#include "tracer/mirrors.h"
 #include "tracer/prepared/shapes.h"
 
 #include <algorithm>
@@ -80,31 +81,52 @@ void ask(const PreparedScene& prepared, const SurfacePoints& surfaces, std::size
 
 // ---- highlights --------------------------------------------------------------------------------
 
-// M K_S (R.V)^N of the lobes that the surface point shows; `mirrored` is R.V.
+// K_S (R.V)^N of one lobe.
+double highlight(const PreparedLobe& lobe, double reflected) {
+    if (lobe.specular == 0 || reflected < lobe.highlight_end) return 0;
+    return lobe.specular * std::pow(reflected, lobe.shininess);
+}
+
+// The same of the lobes that the surface point shows; `reflected` is R.V.
 double highlight(const PreparedMaterial& material, const LobeMix& mix, double reflected) {
-    const auto lobe = [&](std::size_t i) {
-        const PreparedLobe& l = material.lobes[i];
-        if (l.specular == 0 || reflected < l.highlight_end) return 0.0;
-        return l.specular * std::pow(reflected, l.shininess);
-    };
-    if (mix.share == 0) return lobe(mix.first);
-    return lobe(mix.first) * (1 - mix.share) + lobe(mix.first + 1) * mix.share;
+    const double first = highlight(material.lobes[mix.first], reflected);
+    if (mix.share == 0) return first;
+    return first * (1 - mix.share) +
+           highlight(material.lobes[mix.first + 1], reflected) * mix.share;
+}
+
+// And with what their mirrors leave of each.
+Vec3 kept_highlight(const SurfacePoints& surfaces, std::size_t i, double reflected) {
+    const LobeMix& mix = surfaces.lobes[i];
+    const std::vector<PreparedLobe>& lobes = surfaces.material[i]->lobes;
+    Vec3 sum = surfaces.kept[i] * (highlight(lobes[mix.first], reflected) * (1 - mix.share));
+    if (mix.share > 0)
+        sum += surfaces.next_kept[i] * (highlight(lobes[mix.first + 1], reflected) * mix.share);
+    return sum;
+}
+
+// The highlight of a surface point, that of its coat included, for light from where `arrival` says.
+Vec3 whole_highlight(const SurfacePoints& surfaces, std::size_t i, const LightSamples& arrival) {
+    const PreparedMaterial& material = *surfaces.material[i];
+    const double reflected = arrival.reflected[i];
+    Vec3 sum = material.takes_reflected ? kept_highlight(surfaces, i, reflected)
+                                        : Vec3(highlight(material, surfaces.lobes[i], reflected));
+    if (material.highlight_metallic > 0 && sum != Vec3(0))
+        sum *= metallic_tint(material.highlight_metallic, arrival.cosine[i], surfaces.tint[i]);
+    if (material.coat) sum += Vec3(highlight(material.coat->lobe, reflected));
+    return sum;
 }
 
 void add_highlights(const PreparedSource& source, const SurfacePoints& surfaces, const Block& block,
                     const Vec3Array* filter, LightSamples& arrival, Vec3Array& radiance) {
     find_reflected(surfaces, block, arrival);
     for (std::size_t i = block.first; i < block.last; ++i) {
-        const double k = arrival.reflected[i];
-        const PreparedMaterial& material = *surfaces.material[i];
-        if (k <= 0 || arrival.share[i] == 0 || !material.shines) continue;
-        const double amount = highlight(material, surfaces.lobes[i], k);
-        if (amount == 0) continue;
-        Vec3 light = source.color * (amount * arrival.share[i] * surfaces.alpha[i]);
+        if (arrival.reflected[i] <= 0 || arrival.share[i] == 0 || !surfaces.material[i]->shines)
+            continue;
+        const Vec3 amount = whole_highlight(surfaces, i, arrival);
+        if (amount == Vec3(0)) continue;
+        Vec3 light = source.color * (arrival.share[i] * surfaces.alpha[i]) * amount;
         if (filter != nullptr) light *= (*filter)[i];
-        if (material.highlight_metallic > 0)
-            light *=
-                metallic_tint(material.highlight_metallic, arrival.cosine[i], surfaces.tint[i]);
         for (std::size_t c = 0; c < 3; ++c) radiance.axis[c][i] += light[int(c)];
     }
 }
@@ -175,13 +197,6 @@ void find_blocks(const PreparedScene& prepared, const SurfacePoints& surfaces, L
 }
 
 }  // namespace
-
-Vec3 metallic_tint(double metallic, double cosine, const Vec3& pigment) {
-    const double x = std::acos(std::clamp(cosine, -1.0, 1.0)) / (std::numbers::pi / 2);
-    const double curve =
-        std::clamp(0.014567225 / ((x - 1.12) * (x - 1.12)) - 0.011612903, 0.0, 1.0);
-    return Vec3(1) + (pigment - Vec3(1)) * (metallic * (1 - curve));
-}
 
 void add_direct_light(const PreparedScene& prepared, const SurfacePoints& surfaces, LightWork& work,
                       Vec3Array& radiance) {

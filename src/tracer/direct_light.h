@@ -19,11 +19,6 @@ struct LightWork {
     explicit LightWork(std::size_t capacity = 0) : arrival(capacity), receives(capacity) {}
 };
 
-/// POV-Ray's tint of metallic highlights and reflections: 1 + m (1 - F)(P - 1), where F is its
-/// empirical Fresnel curve of the angle whose cosine is given (source/backend/render/trace.cpp of
-/// 3.7, ComputePhongColour).
-Vec3 metallic_tint(double metallic, double cosine, const Vec3& pigment);
-
 /// Adds ambient, emitted, diffuse and highlight terms of every surface point to radiance.
 void add_direct_light(const PreparedScene& prepared, const SurfacePoints& surfaces, LightWork& work,
                       Vec3Array& radiance);

@@ -1,6 +1,6 @@
 #include "tracer/scatter.h"
 
-#include "tracer/direct_light.h"
+#include "tracer/mirrors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,13 +47,6 @@ double fresnel_reflectance(double index, double cosine) {
     return std::clamp(0.5 * a * a * (1 + b * b), 0.0, 1.0);
 }
 
-// What the lobes of the surface point reflect together.
-Vec3 reflection_of(const PreparedMaterial& material, const LobeMix& mix) {
-    const Vec3 first = material.lobes[mix.first].reflection;
-    if (mix.share == 0) return first;
-    return first * (1 - mix.share) + material.lobes[mix.first + 1].reflection * mix.share;
-}
-
 // Pushes the ray that goes on behind the surface. Returns whether it is reflected totally instead.
 bool transmit(const PreparedScene& prepared, const SurfacePoints& surfaces, std::size_t slot,
               const Path& path, Onward onward) {
@@ -92,26 +85,6 @@ bool transmit(const PreparedScene& prepared, const SurfacePoints& surfaces, std:
     return true;
 }
 
-// A normal in world space as one in the mesh's; not unit.
-Vec3 normal_to_mesh(const Matrix& to_world, const Vec3& n) {
-    const Matrix& m = to_world;  // the transpose: that of the inverse leads back
-    return {m[0][0] * n.x + m[0][1] * n.y + m[0][2] * n.z,
-            m[1][0] * n.x + m[1][1] * n.y + m[1][2] * n.z,
-            m[2][0] * n.x + m[2][1] * n.y + m[2][2] * n.z};
-}
-
-// The normal of a virtual mirror: in world space, or where vertices have textures of their own, in
-// that of the mesh.
-Vec3 displaced_normal(const PreparedScene& prepared, Index object, const Vec3& normal,
-                      const Vec3& offset) {
-    if (!prepared.displaces_in_mesh(object)) return (normal + offset).normalized();
-    const Vec3 there =
-        normal_to_mesh(prepared.scene.instances[object].transform, normal).normalized();
-    return prepared.facets->placed(object)
-        .normal_to_world((there + offset).normalized())
-        .normalized();
-}
-
 // The view mirrored by a displaced normal as POV-Ray does it (source/backend/render/trace.cpp of
 // 3.7, ComputeReflection): what would go into the surface is mirrored once more, by the normal that
 // was not displaced.
@@ -129,9 +102,7 @@ void reflect(const PreparedScene& prepared, const SurfacePoints& surfaces, std::
              Onward onward) {
     const PreparedMaterial& material = *surfaces.material[slot];
     const double cosine = -surfaces.view[slot].dot(normal);
-    if (material.metallic > 0)
-        share *= metallic_tint(material.metallic, cosine, surfaces.tint[slot]);
-    share *= surfaces.alpha[slot];
+    share *= tint_of_mirror(surfaces, slot, cosine) * surfaces.alpha[slot];
     if (material.fresnel) {
         const Index medium = prepared.medium_of(surfaces.object[slot], path.mirrored);
         share *= fresnel_reflectance(relative_index(prepared, path.inside, medium), cosine);
@@ -143,7 +114,26 @@ void reflect(const PreparedScene& prepared, const SurfacePoints& surfaces, std::
     onward.next.push(surfaces.position[slot], direction.normalized(), back);
 }
 
-// The same of every virtual mirror of a lobe, which counts as much as `share`.
+// The mirrors of the coat.
+void reflect_coat(const PreparedScene& prepared, const SurfacePoints& surfaces, std::size_t slot,
+                  const Path& path, Onward onward) {
+    const PreparedCoat& coat = *surfaces.material[slot]->coat;
+    const Vec3 view = surfaces.view[slot], normal = surfaces.normal[slot];
+    const auto push = [&](const Vec3& by, std::size_t count) {
+        Path back = path;
+        ++back.level;
+        back.mirrored = true;
+        back.weight *= coat_reflectance(coat, -view.dot(by)) * surfaces.alpha[slot] / double(count);
+        if (back.weight == Vec3(0)) return;
+        onward.next.push(surfaces.position[slot], mirrored_by(view, by, normal).normalized(), back);
+    };
+    if (path.mirrored) return push(normal, 1);
+    for (const Vec3& offset : coat.lobe.mirrors)
+        push(displaced_normal(prepared, surfaces.object[slot], normal, offset),
+             coat.lobe.mirrors.size());
+}
+
+// What reflect() does, of every virtual mirror of a lobe, which counts as much as `share`.
 void reflect_by(const PreparedLobe& lobe, double share, const PreparedScene& prepared,
                 const SurfacePoints& surfaces, std::size_t slot, const Path& path, Onward onward) {
     if (share == 0 || lobe.reflection == Vec3(0)) return;
@@ -169,7 +159,9 @@ void scatter(const PreparedScene& prepared, const SurfacePoints& surfaces, std::
     if ((!material.opaque || alpha == 0) && surfaces.transmittance[slot] != Vec3(0))
         total = transmit(prepared, surfaces, slot, path, onward);
     // Where the surface itself is opaque POV-Ray looks for no total reflection.
-    if (!material.mirrors || alpha == 0 || (total && material.opacity < 1)) return;
+    if (alpha == 0 || (total && material.opacity < 1)) return;
+    if (material.coat) reflect_coat(prepared, surfaces, slot, path, onward);
+    if (!material.mirrors) return;
     const LobeMix& mix = surfaces.lobes[slot];
     if (!material.blurs || path.mirrored)
         return reflect(prepared, surfaces, slot, path, surfaces.normal[slot],

@@ -13,7 +13,7 @@ namespace penumbra {
 
 void SurfacePoints::resize(std::size_t capacity) {
     for (Vec3Array* vectors : {&position, &normal, &view, &reflected, &facet_normal, &pigment,
-                               &tint, &emitted, &transmittance, &from_behind})
+                               &tint, &emitted, &transmittance, &from_behind, &kept, &next_kept})
         vectors->resize(capacity);
     diffuse.resize(capacity);
     alpha.resize(capacity);

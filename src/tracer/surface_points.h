@@ -24,6 +24,7 @@ struct SurfacePoints {
     Vec3Array emitted;            ///< ambient and emitted light
     Vec3Array transmittance;      ///< factor of what lies behind; of surfaces not opaque
     Vec3Array from_behind;        ///< K_T x opacity x alpha; of backlit surfaces
+    Vec3Array kept, next_kept;    ///< what the mirrors of both lobes leave; where they take any
     std::vector<double> diffuse;  ///< K_D x opacity x alpha
     std::vector<double> alpha;    ///< of the AlphaMap; 1 without, 0 of a hidden back
     std::vector<double> share;    ///< of this look in a Blend; 1 without

@@ -5,6 +5,7 @@
 #include "scene/view.h"
 #include "tracer/back_light.h"
 #include "tracer/direct_light.h"
+#include "tracer/mirrors.h"
 #include "tracer/prepared/shapes.h"
 #include "tracer/ray_order.h"
 #include "tracer/scatter.h"
@@ -155,6 +156,10 @@ void find_surface_points(const PreparedScene& prepared, Workspace& work) {
         const std::size_t found =
             find_surface_point(prepared, rays.rays.origin[i], rays.rays.direction[i], work.hits[i],
                                work.surfaces, work.surfaces.count);
+        for (std::size_t k = 0; k < found; ++k)
+            if (const std::size_t slot = work.surfaces.count + k;
+                work.surfaces.material[slot]->takes_reflected)
+                find_kept(prepared, rays.paths[i].mirrored, work.surfaces, slot);
         work.surfaces.count += found;
         work.ray_of.insert(work.ray_of.end(), found, i);
     }

@@ -46,8 +46,17 @@ void MaterialReader::read_volume() {
         const double f0 = std::pow((n - 1) / (n + 1), 2);
         material.ior = float(n);
         material.fresnel = true;
-        const Color mirror = full_lobe(mean_roughness(), 1, f0).reflection;
+        const Surroundings surroundings = reader.options.surroundings;
+        const Color mirror = full_lobe(mean_roughness(), 1, f0, surroundings).reflection;
         const DielectricReflectance reflects = dielectric();
+        if (surroundings == Surroundings::environment) {
+            // Fresnel's term takes the place of a tint that rises in grazing light.
+            material.specular *= float(reflects.strength());
+            if (reflects.plain())
+                material.specular_color.reset();
+            else
+                material.specular_color = reflects.tint();
+        }
         if (material.specular_color) {
             material.reflection = mirror * float(reflects.strength() / f0);
         } else {
@@ -119,6 +128,10 @@ void MaterialReader::read_clearcoat() {
     const double roughness = number(*given, "clearcoatRoughnessFactor", 0) *
                              double(mean_of(*given, "clearcoatRoughnessTexture", false).y);
     if (coat == 0) return;
+    if (reader.options.surroundings == Surroundings::environment) {
+        material.coat = clear_coat(coat, roughness);
+        return;
+    }
     // What is beneath is left 1 - coat x F of its light, its own too (KHR_materials_clearcoat,
     // layering and emission). A Phong surface has no angle for that: F is that of normal incidence.
     under_coat = float(1 - coat_f0 * coat);

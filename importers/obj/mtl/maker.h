@@ -23,6 +23,7 @@ struct MaterialMaker {
     const MtlValues& values;
     TextureReader& textures;
     LossTally& tally;
+    Surroundings surroundings = Surroundings::lamps;
     Material material = {};
     std::optional<MapImage> base = {};      ///< of map_Kd
     std::vector<std::string> handled = {};  ///< keys of maps

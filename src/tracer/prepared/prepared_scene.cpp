@@ -25,6 +25,16 @@ PreparedLobe prepare(const SpecularLobe& lobe, int mirrors) {
     return prepared;
 }
 
+PreparedCoat prepare(const Coat& coat, bool opaque) {
+    const SpecularLobe lobe = {.specular = coat.specular,
+                               .shininess = coat.shininess,
+                               .reflection = Color(coat.reflection),
+                               .roughness = coat.roughness};
+    return {.lobe = prepare(lobe, opaque ? coat.mirrors : 1),
+            .grazing = coat.grazing,
+            .takes_reflected = opaque && mirrors(coat)};
+}
+
 PreparedMaterial prepare(const Material& m, const Color& ambient_light) {
     PreparedMaterial f = {.source = &m,
                           .ambient = Vec3(m.ambient) * Vec3(ambient_light),
@@ -42,6 +52,7 @@ PreparedMaterial prepare(const Material& m, const Color& ambient_light) {
                           .passes = !opaque(m) || m.sides == Sides::front,
                           .textured = std::holds_alternative<ImageMap>(m.pattern)};
     f.blurs = blurs(m);
+    f.conserves = takes_reflected(m);
     const int mirrors = f.blurs ? m.mirrors : 1;
     if (m.specular_lobes)
         for (const SpecularLobe& lobe : m.specular_lobes->lobes)
@@ -56,6 +67,11 @@ PreparedMaterial prepare(const Material& m, const Color& ambient_light) {
         f.shines |= lobe.specular > 0;
         f.mirrors |= lobe.reflection != Vec3(0);
     }
+    if (m.coat) {
+        f.coat = prepare(*m.coat, m.opacity >= 1);
+        f.shines |= m.coat->specular > 0;
+    }
+    f.takes_reflected = f.conserves || (f.coat && f.coat->takes_reflected);
     f.backlit = m.diffuse_transmission != Color(0);
     if (m.blend)
         f.other = std::make_shared<PreparedMaterial>(prepare(m.blend->other[0], ambient_light));

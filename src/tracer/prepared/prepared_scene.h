@@ -11,6 +11,7 @@
 #include "penumbra/scene.h"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace penumbra {
@@ -21,6 +22,13 @@ struct PreparedLobe {
     double highlight_end = 0;  ///< below this cosine the highlight is nothing
     Vec3 reflection = Vec3(0);
     std::vector<Vec3> mirrors = {Vec3(0)};  ///< displacements of the normal: see virtual_mirrors()
+};
+
+/// A Coat likewise.
+struct PreparedCoat {
+    PreparedLobe lobe = {};  ///< its reflection is that at normal incidence
+    double grazing = 0;
+    bool takes_reflected = false;
 };
 
 /// A Material with its float32 numbers widened and combined with the scene's.
@@ -35,8 +43,11 @@ struct PreparedMaterial {
     bool opaque = true, absorbs = false, fresnel = false;
     bool passes = false;  ///< rays may go on behind it: not opaque, or not there from behind
     bool textured = false;
-    bool shines = false, mirrors = false;                ///< any lobe does
-    bool blurs = false;                                  ///< any lobe has several mirrors
+    bool shines = false, mirrors = false;  ///< any lobe does
+    bool blurs = false;                    ///< any lobe has several mirrors
+    bool conserves = false;                ///< see takes_reflected()
+    bool takes_reflected = false;          ///< it or its coat
+    std::optional<PreparedCoat> coat = {};
     bool backlit = false;                                ///< shows light from behind
     std::shared_ptr<const PreparedMaterial> other = {};  ///< of its Blend
 };
