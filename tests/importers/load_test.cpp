@@ -121,6 +121,51 @@ TEST_CASE("A texture on a mesh without texture coordinates is a loss") {
                         "plain colour is used");
 }
 
+TEST_CASE("A translucent material is shown without the maps that it has, and those are named") {
+    Inputs inputs;
+    inputs.file("a.toml", "[material.leaf]\nopacity = 0.5");
+    const auto lost = [&](const char* name, const test::json& maps) {
+        test::json material = {{"name", "leaf"}};
+        material.update(maps);
+        test::Gltf gltf = test::with_material(material);
+        const test::json image = test::pixels(3, {255, 51, 0, 0, 204, 255});
+        gltf.add("textures", {{"source", gltf.add("images", image)}});
+        inputs.file(name, gltf.text());
+        const Imported result = inputs.load({name, "a.toml"});
+        CHECK(defects(result.scene).empty());
+        std::vector<std::string> said;
+        for (const Loss& loss : result.losses)
+            if (loss.place == "material 'leaf'") said.push_back(loss.what);
+        return said;
+    };
+    const test::json emission = {{"emissiveTexture", {{"index", 0}}},
+                                 {"emissiveFactor", {1, 1, 1}}};
+    test::json both = emission;
+    both["pbrMetallicRoughness"] = {{"metallicRoughnessTexture", {{"index", 0}}}};
+    using Lines = std::vector<std::string>;
+    CHECK(lost("a.gltf", emission) ==
+          Lines{"is shown without its emission map: it is translucent"});
+    CHECK(lost("b.gltf", both) ==
+          Lines{"is shown without its specular lobes and emission map: it is translucent"});
+    CHECK(lost("c.gltf", test::json::object()).empty());
+}
+
+TEST_CASE("Facets that lie on one another are a loss with their number") {
+    Inputs inputs;
+    const std::string corners = facet_obj;
+    inputs.file("same.obj", corners + "f 1 2 3\nf 1 2 3\n");
+    inputs.file("back.obj", corners + "f 3 2 1\n");
+    const auto lost = [&](const char* name, const LoadOptions& options) {
+        const Losses losses = inputs.load({name}, options).losses;
+        const auto found = std::ranges::find(losses, "facets", &Loss::place);
+        REQUIRE(found != losses.end());
+        CHECK(found->what.starts_with("2 that lie "));
+        return found->count;
+    };
+    CHECK(lost("same.obj", {}) == 2);
+    CHECK(lost("back.obj", {.sides = Sides::front}) == 2);
+}
+
 TEST_CASE("A model's first camera is the active one until another is picked by name") {
     Inputs inputs;
     inputs.file("stage.gltf", stage).file("a.toml", "[camera]\nname = \"Side\"");
