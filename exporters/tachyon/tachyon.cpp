@@ -1,3 +1,4 @@
+#include "base/text/text.h"
 #include "exporters/shared/targets.h"
 #include "exporters/tachyon/images.h"
 #include "exporters/tachyon/material.h"
@@ -213,7 +214,7 @@ Exported write_tachyon(const NormalisedScene& normalised, const RenderOptions& r
     const Scene& scene = normalised.scene;
     check(render);
     assert(defects(scene).empty());
-    if (file.extension() != ".dat")
+    if (lower_extension(file) != ".dat")
         throw Error(Failure::output, file.string(), "a Tachyon scene must end in .dat");
     check_targets(targets(scene, file), options);
     Output out(scene, file, options);

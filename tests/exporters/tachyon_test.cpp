@@ -284,6 +284,22 @@ TEST_CASE("the formats of scenes, are chosen by the extension") {
     CHECK(extensions == std::vector<std::string>{".pov", ".inc", ".dat"});
 }
 
+TEST_CASE("the formats of scenes, are told in upper case too") {
+    const test::TempDir folder;
+    const NormalisedScene scene = test::as_is(stage());
+    for (const char* name : {"a.POV", "b.Dat", "c.INC"}) {
+        const auto file = folder / name;
+        const ExportOptions options = {.pov_style =
+                                           *name == 'c' ? PovStyle::include : PovStyle::standalone};
+        check_export_file(file, options);
+        CHECK(export_scene(scene, small, file, options).files[0] == file);
+        CHECK(test::fs::exists(file));
+    }
+    CHECK(has(test::read(folder / "a.ini"), "Input_File_Name=\"a.POV\""));
+    CHECK(test::message_of([&] { check_export_file("a.INC"); }) ==
+          "a.INC: a POV-Ray scene must end in .pov");
+}
+
 TEST_CASE("the formats of scenes, are listed for another extension") {
     const auto message = [&](const std::string& file, PovStyle style = PovStyle::standalone) {
         return test::message_of([&] { check_export_file(file, {.pov_style = style}); });
@@ -293,7 +309,7 @@ TEST_CASE("the formats of scenes, are listed for another extension") {
     CHECK(message("a.gltf") == "a.gltf: unknown scene format" + list);
     CHECK(message("a") == "a: its name has no extension" + list);
     CHECK(message("a.povv") == "a.povv: unknown scene format (did you mean '.pov'?)");
-    CHECK(message("a.DAT") == "a.DAT: unknown scene format (did you mean '.dat'?)");
+    CHECK(message("a.POVV") == "a.POVV: unknown scene format (did you mean '.pov'?)");
     CHECK(message("a.inc") == "a.inc: a POV-Ray scene must end in .pov");
     CHECK(message("a.dat", PovStyle::include) ==
           "a.dat: an include file of POV-Ray must end in .inc or .pov");

@@ -1,4 +1,5 @@
 #include "base/file.h"
+#include "base/text/text.h"
 #include "cli/batch/case_cache.h"
 #include "cli/steps.h"
 
@@ -17,8 +18,8 @@ void check_picture(const std::filesystem::path& file, int bits) {
     if (!can_save_image(file))
         throw Error(Failure::output, file.string(),
                     "unknown picture format (use .png, .exr, .tif, .jpg or .hdr)");
-    const std::string extension = file.extension().string();
-    if (bits == 16 && extension.find_first_of("pPtT") != 1)
+    const std::string extension = lower_extension(file);
+    if (bits == 16 && extension != ".png" && extension != ".tif" && extension != ".tiff")
         throw Error(Failure::usage, "--depth",
                     fmt::format("16 bits are for .png and .tif, not {}", extension));
     check_writable(file);
@@ -34,7 +35,7 @@ int render(const Context& context) {
     const Stopwatch import_time;
     Imported imported = load(context, arguments.inputs);
     check_not_input(output, imported.files);
-    if (output.extension() != ".png") preload_image_module();  // while the picture is rendered
+    if (lower_extension(output) != ".png") preload_image_module();  // while the picture is rendered
     report_losses(context, imported.losses);
     const RenderOptions options = imported.render;
     const NormalisedScene scene = normalise(std::move(imported.scene), options);
