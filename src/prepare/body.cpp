@@ -5,7 +5,6 @@
 #include "penumbra/scene.h"
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -23,8 +22,8 @@ namespace {
 
 // Different for (a, b) and (b, a).
 std::uint64_t hash_of_edge(std::uint64_t a, std::uint64_t b) {
-    const std::uint64_t mixed = (a ^ std::rotl(b, 31)) * 0x9E3779B97F4A7C15U;
-    return mixed ^ (mixed >> 32U);
+    const std::array ends = {a, b};
+    return hash_of(std::as_bytes(std::span(ends)));
 }
 
 // Vertices by their places, to a millionth of the mesh: seams are closed but for rounding.
