@@ -78,14 +78,14 @@ std::size_t drop_coincident_facets(Scene& scene) {
     for (const Instance& i : scene.instances) ++uses[i.mesh];
     const std::vector<Index> asked = instances_to_ask(scene, uses);
     if (asked.empty()) return 0;
-    const World world{scene};
-    const std::vector<Placed> facets = suspects(world, asked);
+    const LocalPositions local{scene};
+    const std::vector<Placed> facets = suspects(local, asked);
     std::map<Index, std::vector<Index>> dropped;  // by instance
     std::size_t count = 0;
     for (std::size_t i = 1, first = 0; i < facets.size(); ++i) {
         if (facets[i].hash != facets[first].hash) first = i;
         if (first == i || !shows_all_of(scene, facets[first], facets[i]) ||
-            !same_corners(corners(world, facets[first]), corners(world, facets[i])))
+            !same_corners(corners(local, facets[first]), corners(local, facets[i])))
             continue;
         dropped[facets[i].instance].push_back(facets[i].facet);
         ++count;
