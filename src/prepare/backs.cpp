@@ -3,6 +3,7 @@
 #include "prepare/body.h"
 #include "prepare/same_corners.h"
 #include "prepare/scale.h"
+#include "scene/defects.h"
 #include "scene/sides.h"
 #include "scene/tolerances.h"
 #include "scene/transforms.h"
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <set>
@@ -101,6 +103,7 @@ std::string what_shows(const Backs& backs) {
 }  // namespace
 
 std::size_t lift_back_to_back_facets(Scene& scene) {
+    assert(all_indices_in_range(scene));
     const std::vector<Index> asked = one_sided_instances(scene);
     if (asked.empty()) return 0;
     const LocalPositions local{scene};
@@ -130,6 +133,7 @@ std::size_t lift_back_to_back_facets(Scene& scene) {
 }
 
 Losses shown_backs(const Scene& scene) {
+    assert(all_indices_in_range(scene));
     std::map<Index, Backs> worst;  // by material
     const std::vector<Backs> all = backs(scene);
     std::map<Index, bool> bodies;  // by mesh

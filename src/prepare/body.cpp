@@ -1,10 +1,12 @@
 #include "prepare/body.h"
 
 #include "base/hash.h"
+#include "scene/defects.h"
 
 #include "penumbra/scene.h"
 
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -46,6 +48,7 @@ std::vector<std::uint64_t> places_of(const Mesh& mesh) {
 // Every edge then runs as often one way as the other, so that a sum over the hashes of both ways
 // is 0, and the volume is positive (the sum of the tetrahedra between one point and the facets).
 bool bounds_body(const Mesh& mesh) {
+    assert(indices_in_range(mesh));
     const std::vector<std::uint64_t> places = places_of(mesh);
     std::uint64_t open = 0;
     double volume = 0;

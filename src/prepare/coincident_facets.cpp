@@ -1,11 +1,13 @@
 // Facets that lie exactly on one another: which of them a ray hits is a matter of rounding.
 #include "prepare/same_corners.h"
 #include "prepare/scale.h"
+#include "scene/defects.h"
 
 #include "penumbra/prepare.h"
 #include "penumbra/scene.h"
 
 #include <algorithm>
+#include <cassert>
 #include <map>
 #include <utility>
 #include <vector>
@@ -74,6 +76,7 @@ bool shows_all_of(const Scene& scene, const Placed& kept, const Placed& other) {
 }  // namespace
 
 std::size_t drop_coincident_facets(Scene& scene) {
+    assert(all_indices_in_range(scene));
     std::vector<std::size_t> uses(scene.meshes.size(), 0);
     for (const Instance& i : scene.instances) ++uses[i.mesh];
     const std::vector<Index> asked = instances_to_ask(scene, uses);
