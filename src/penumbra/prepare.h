@@ -13,7 +13,7 @@ namespace penumbra {
 /// Gives a scene what a picture needs and its author left out: a material for everything without
 /// one, a camera framed on the bounds from front-right-above, and, when it has no light, a rig of
 /// three sources sized to the bounds. `aspect` is width / height. Precondition: that of bounds(),
-/// aspect > 0, and scene.camera is in range or no_index.
+/// aspect > 0, and where there are cameras scene.camera is one of them or no_index.
 void complete(Scene& scene, double aspect);
 
 /// Gives `mesh` the tangents that a normal map at `map` needs: per vertex, in the direction in

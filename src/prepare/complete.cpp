@@ -185,11 +185,11 @@ void frame(Camera& camera, const Bounds& box, double aspect) {
 
 void complete(Scene& scene, double aspect) {
     assert(indices_in_range(scene) && aspect > 0);
-    assert(scene.camera == no_index || scene.camera < scene.cameras.size());
     give_material(scene, scene.meshes);
     give_material(scene, scene.spheres);
     give_material(scene, scene.planes);
     give_camera(scene, aspect);
+    assert(scene.camera < scene.cameras.size());
     if (scene.lights.empty()) give_lights(scene);
 }
 
