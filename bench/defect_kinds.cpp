@@ -303,29 +303,32 @@ std::vector<Defect> of_surfaces() {
          each_material([](Material& m) { m.opacity = 1; })},
         {"refraction missing", {"refraction"}, any_material(bends), each_material([](Material& m) {
              m.ior = 1;
-         })},
-        {"albedo of a material 0.6 for 0.7",
-         {"albedo"},
-         always,
-         changed([](const Stage& stage, Scene& s) {
-             scale_pigment(s.materials[main_material(stage)], Color(0.6F / 0.7F));
-         })},
-        {"albedo of a material redder",
-         {"albedo"},
-         always,
-         changed([](const Stage& stage, Scene& s) {
-             scale_pigment(s.materials[main_material(stage)], {1.05F, 0.95F, 0.9F});
-         })},
-        {"texture mirrored", {"texture"}, has_texture, looked_up(-1, 1, 1, 0, false)},
-        {"texture upside down", {"texture"}, has_texture, looked_up(1, -1, 0, 1, false)},
-        {"texture off by half a texel",
-         {"texture"},
-         has_coarse_texture,
-         looked_up(1, 1, 0.5, 0.5, true)},
-        {"texture missing", {"texture"}, has_texture, changed([](const Stage& stage, Scene& s) {
-             for (const Index i : textured_materials(stage))
-                 s.materials[i].pattern = std::monostate();
          })}};
+}
+
+std::vector<Defect> of_pigments() {
+    return {{"albedo of a material 0.6 for 0.7",
+             {"albedo"},
+             always,
+             changed([](const Stage& stage, Scene& s) {
+                 scale_pigment(s.materials[main_material(stage)], Color(0.6F / 0.7F));
+             })},
+            {"albedo of a material redder",
+             {"albedo"},
+             always,
+             changed([](const Stage& stage, Scene& s) {
+                 scale_pigment(s.materials[main_material(stage)], {1.05F, 0.95F, 0.9F});
+             })},
+            {"texture mirrored", {"texture"}, has_texture, looked_up(-1, 1, 1, 0, false)},
+            {"texture upside down", {"texture"}, has_texture, looked_up(1, -1, 0, 1, false)},
+            {"texture off by half a texel",
+             {"texture"},
+             has_coarse_texture,
+             looked_up(1, 1, 0.5, 0.5, true)},
+            {"texture missing", {"texture"}, has_texture, changed([](const Stage& stage, Scene& s) {
+                 for (const Index i : textured_materials(stage))
+                     s.materials[i].pattern = std::monostate();
+             })}};
 }
 
 std::vector<Defect> of_geometry() {
@@ -358,7 +361,7 @@ Stage make_stage(const std::string& name, NormalisedScene scene, const RenderOpt
 
 std::vector<Defect> all_defects() {
     std::vector<Defect> result;
-    for (const auto list : {of_light, of_surfaces, of_geometry, of_pictures})
+    for (const auto list : {of_light, of_surfaces, of_pigments, of_geometry, of_pictures})
         std::ranges::move(list(), std::back_inserter(result));
     return result;
 }

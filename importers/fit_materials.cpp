@@ -1,9 +1,13 @@
 #include "importers/fit_materials.h"
 
+#include "importers/shared/formats.h"
+
 #include <fmt/format.h>
 
 #include <map>
+#include <string>
 #include <variant>
+#include <vector>
 
 namespace penumbra {
 
@@ -39,13 +43,19 @@ void drop_images_without_texcoords(Imported& result) {
 
 void drop_maps_of_translucent_materials(Imported& result) {
     for (Material& m : result.scene.materials) {
-        if (m.opacity == 1 || (!m.specular_lobes && !m.emission_map && !m.diffuse_transmission_map))
-            continue;
-        m.specular_lobes.reset();
-        m.emission_map.reset();
-        m.diffuse_transmission_map.reset();
-        result.losses.push_back({Loss::dropped, fmt::format("material '{}'", m.name),
-                                 "its gloss and emission images are dropped: it is translucent"});
+        if (m.opacity == 1) continue;
+        std::vector<std::string> dropped;
+        const auto drop = [&](auto& map, const char* name) {
+            if (map) dropped.emplace_back(name);
+            map.reset();
+        };
+        drop(m.specular_lobes, "specular lobes");
+        drop(m.emission_map, "emission map");
+        drop(m.diffuse_transmission_map, "diffuse transmission map");
+        if (dropped.empty()) continue;
+        result.losses.push_back(
+            {Loss::dropped, fmt::format("material '{}'", m.name),
+             fmt::format("is shown without its {}: it is translucent", listed(dropped, "and"))});
     }
 }
 

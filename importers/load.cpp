@@ -171,13 +171,15 @@ void separate_coincident_facets(Imported& result) {
             {Loss::approximated, "facets",
              fmt::format("{} that lie back to back are moved apart by a little, "
                          "each towards the side that it shows",
-                         count)});
+                         count),
+             count});
     if (const std::size_t count = drop_coincident_facets(scene); count > 0)
         result.losses.push_back(
             {Loss::approximated, "facets",
              fmt::format("{} that lie exactly on others are left out: which of them "
                          "shows would be a matter of rounding",
-                         count)});
+                         count),
+             count});
 }
 
 // Returns the bounds of what they lay.

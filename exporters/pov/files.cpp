@@ -1,5 +1,6 @@
 #include "exporters/pov/files.h"
 
+#include "base/text/text.h"
 #include "exporters/shared/targets.h"
 #include "scene/texture/texture_lookup.h"
 
@@ -42,20 +43,22 @@ void limit_floats(Raster& raster) {
 
 void check_name(const fs::path& file, PovStyle style) {
     const bool include = style == PovStyle::include;
-    if (file.extension() == ".pov" || (include && file.extension() == ".inc")) return;
+    const std::string extension = lower_extension(file);
+    if (extension == ".pov" || (include && extension == ".inc")) return;
     throw Error(Failure::output, file.string(),
                 include ? "an include file of POV-Ray must end in .inc or .pov"
                         : "a POV-Ray scene must end in .pov");
 }
 
-std::string ini_text(const RenderOptions& render, const std::string& stem) {
+std::string ini_text(const RenderOptions& render, const std::string& stem,
+                     const std::string& extension) {
     std::string out = fmt::format("; Run in this folder: povray {0}.ini\n"
-                                  "Input_File_Name=\"{0}.pov\"\n"
+                                  "Input_File_Name=\"{0}{3}\"\n"
                                   "Output_File_Name=\"{0}.exr\"\n"
                                   "Output_File_Type=E\n"
                                   "Width={1}\n"
                                   "Height={2}\n",
-                                  stem, render.width, render.height);
+                                  stem, render.width, render.height, extension);
     if (render.samples > 1)
         out += fmt::format("; every pixel on a fixed grid of {0} x {0} rays\n"
                            "Antialias=On\n"

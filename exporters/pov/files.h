@@ -14,8 +14,9 @@ namespace penumbra::pov {
 /// Throws Error (output) unless a file of this style may have this name.
 void check_name(const std::filesystem::path& file, PovStyle style);
 
-/// The options that make POV-Ray render stem.pov as the tracer does.
-std::string ini_text(const RenderOptions& render, const std::string& stem);
+/// The options that make POV-Ray render the file of that stem and extension as the tracer does.
+std::string ini_text(const RenderOptions& render, const std::string& stem,
+                     const std::string& extension);
 
 /// The samples that are written to the texture's file: RGB, no grey, no alpha.
 Raster baked(const Texture& texture, const TextureFile& file);

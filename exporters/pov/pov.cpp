@@ -268,7 +268,7 @@ Exported write_pov(const NormalisedScene& scene, const RenderOptions& render, co
         write_file(path, text);
         others.push_back(path);
     };
-    const std::string ini = include ? "" : pov::ini_text(render, plan.stem);
+    const std::string ini = include ? "" : pov::ini_text(render, plan.stem, extension);
     const std::string text = Writer{scene, render, options, stem, plan, extension}.text();
     const std::string geometry = include ? "" : geometry_text(plan);
     if (!include) write(folder / (plan.stem + ".ini"), ini);

@@ -13,7 +13,7 @@ const Color black(0), white(1);
 bool grey(const Color& c) { return c.x == c.y && c.y == c.z; }
 
 // Finds what Tachyon's textures cannot say.
-struct Losing {
+struct LossNotes {
     Output& out;
     const Material& material;
 
@@ -28,7 +28,7 @@ struct Losing {
 // One colour in place of a pattern.
 Color plain(Output& out, const Material& m) {
     if (std::holds_alternative<std::monostate>(m.pattern)) return m.color;
-    Losing{out, m}.approximated(true, "the pattern becomes its mean colour");
+    LossNotes{out, m}.approximated(true, "the pattern becomes its mean colour");
     if (const auto* map = std::get_if<ImageMap>(&m.pattern))
         return m.color * mean(out.scene.textures[map->texture]);
     if (const auto* checker = std::get_if<Checker>(&m.pattern))
@@ -48,29 +48,29 @@ SpecularLobe lobe_of(const Material& m) {
 }
 
 void note_losses(Output& out, const Material& m, const SpecularLobe& lobe) {
-    const Losing lose{out, m};
+    const LossNotes note{out, m};
     const bool clear = m.opacity < 1, mirror = lobe.reflection != black;
-    lose.dropped(m.emission != black, "emission is left out");
-    lose.dropped(m.diffuse_transmission != black, "light from behind is left out");
-    lose.approximated(!grey(m.ambient * out.scene.ambient), "ambient light becomes grey");
-    lose.dropped(m.blend.has_value(), "the second look of a surface is left out");
-    lose.dropped(m.alpha_map.has_value(), "the alpha map is left out: the surface is whole");
-    lose.dropped(m.sides == Sides::front, "facets are seen from behind as well");
-    lose.dropped(m.normal_map.has_value(), "the normal map is dropped: Tachyon has none");
-    lose.approximated(m.specular_lobes.has_value(),
+    note.dropped(m.emission != black, "emission is left out");
+    note.dropped(m.diffuse_transmission != black, "light from behind is left out");
+    note.approximated(!grey(m.ambient * out.scene.ambient), "ambient light becomes grey");
+    note.dropped(m.blend.has_value(), "the second look of a surface is left out");
+    note.dropped(m.alpha_map.has_value(), "the alpha map is left out: the surface is whole");
+    note.dropped(m.sides == Sides::front, "facets are seen from behind as well");
+    note.dropped(m.normal_map.has_value(), "the normal map is dropped: Tachyon has none");
+    note.approximated(m.specular_lobes.has_value(),
                       "highlight and mirror become the same all over it");
-    lose.approximated(!grey(lobe.reflection), "the mirror becomes grey");
-    lose.approximated(m.fresnel && mirror, "the mirror is no stronger in grazing light");
-    lose.approximated(m.metallic > 0 && mirror, "the mirror is not tinted by the metal");
-    lose.approximated(m.metallic > 0 && m.metallic < 1,
+    note.approximated(!grey(lobe.reflection), "the mirror becomes grey");
+    note.approximated(m.fresnel && mirror, "the mirror is no stronger in grazing light");
+    note.approximated(m.metallic > 0 && mirror, "the mirror is not tinted by the metal");
+    note.approximated(m.metallic > 0 && m.metallic < 1,
                       "highlights are those of a metal or of plastic");
-    lose.approximated(m.specular_color.has_value() && (mirror || lobe.specular > 0),
+    note.approximated(m.specular_color.has_value() && (mirror || lobe.specular > 0),
                       "what it reflects takes no colour of its own");
-    lose.approximated(m.metallic > 0.5F && lobe.specular > 0,
+    note.approximated(m.metallic > 0.5F && lobe.specular > 0,
                       "a metal's highlight is the same for every light");
-    lose.approximated(clear && m.transmission > 0, "what is seen through it is not tinted");
-    lose.approximated(clear && m.ior != 1, "light passes straight through it");
-    lose.dropped(clear && m.absorption.has_value(), "absorption is left out");
+    note.approximated(clear && m.transmission > 0, "what is seen through it is not tinted");
+    note.approximated(clear && m.ior != 1, "light passes straight through it");
+    note.dropped(clear && m.absorption.has_value(), "absorption is left out");
 }
 
 // All but the colour.
@@ -103,11 +103,11 @@ std::string texture_of(Output& out, const Plane& plane) {
     const auto image = map != nullptr ? image_name(out, map->texture) : std::nullopt;
     if (!image) return texture_of(out, plane.material);
     const Texture& texture = out.scene.textures[map->texture];
-    const Losing lose{out, m};
-    lose.approximated(m.color != white, "the image is not tinted");
-    lose.approximated(texture.wrap_u != Wrap::repeat || texture.wrap_v != Wrap::repeat,
+    const LossNotes note{out, m};
+    note.approximated(m.color != white, "the image is not tinted");
+    note.approximated(texture.wrap_u != Wrap::repeat || texture.wrap_v != Wrap::repeat,
                       "the image repeats");
-    lose.approximated(true, "the image has 8 bits of linear light, and blurs with the distance");
+    note.approximated(true, "the image has 8 bits of linear light, and blurs with the distance");
     const PlaneFrame frame = plane_frame(plane);
     return finish_of(out, m) +
            fmt::format(" COLOR 1 1 1 TEXFUNC 9 {} CENTER {} ROTATE 0 0 0 SCALE {} {} 1 UAXIS {} "

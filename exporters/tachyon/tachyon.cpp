@@ -1,3 +1,4 @@
+#include "base/text/text.h"
 #include "exporters/shared/targets.h"
 #include "exporters/tachyon/images.h"
 #include "exporters/tachyon/material.h"
@@ -95,15 +96,15 @@ void write_lamp(Output& out, const Lamp& lamp) {
 }
 
 void note_losses(Output& out, const Light& light) {
-    const auto lose = [&](bool lost, const char* what) {
+    const auto note = [&](bool lost, const char* what) {
         if (lost) out.note_loss(Loss::approximated, light.name, "a light", what);
     };
     const bool spot = light.type == Light::Type::spot;
     const bool fades = light.attenuation && light.type != Light::Type::directional;
-    lose(spot, "the edge of its cone fades linearly with the angle");
-    lose(fades && light.attenuation->power != 1 && light.attenuation->power != 2,
+    note(spot, "the edge of its cone fades linearly with the angle");
+    note(fades && light.attenuation->power != 1 && light.attenuation->power != 2,
          "it fades with the square of the distance");
-    lose(spot || fades, "its highlights do not fade with its light");
+    note(spot || fades, "its highlights do not fade with its light");
 }
 
 void write_lights(Output& out) {
@@ -213,7 +214,7 @@ Exported write_tachyon(const NormalisedScene& normalised, const RenderOptions& r
     const Scene& scene = normalised.scene;
     check(render);
     assert(defects(scene).empty());
-    if (file.extension() != ".dat")
+    if (lower_extension(file) != ".dat")
         throw Error(Failure::output, file.string(), "a Tachyon scene must end in .dat");
     check_targets(targets(scene, file), options);
     Output out(scene, file, options);

@@ -48,7 +48,7 @@ struct Assets {
 
     const std::optional<Scene>& scene_of(int asset, const std::string& place);
     Scene load(int asset, const std::string& place);
-    void lose(const std::string& place, const std::string& why) const {
+    void note_loss(const std::string& place, const std::string& why) const {
         whole.losses.push_back({Loss::dropped, place, "its external asset is left out: " + why});
     }
 };
@@ -86,7 +86,7 @@ const std::optional<Scene>& Assets::scene_of(int asset, const std::string& place
         throw;
     } catch (const Error& error) {
         const std::string said = error.what(), before = place + ": ";
-        lose(place, said.starts_with(before) ? said.substr(before.size()) : said);
+        note_loss(place, said.starts_with(before) ? said.substr(before.size()) : said);
     }
     return found->second;
 }

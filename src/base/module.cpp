@@ -46,6 +46,7 @@ std::vector<fs::path> module_places() {
 #ifdef PENUMBRA_BUILD_MODULE_DIR
     places.emplace_back(PENUMBRA_BUILD_MODULE_DIR);
 #endif
+    // A program of somebody else's, with the static library in it, may lie anywhere.
     places.emplace_back(PENUMBRA_MODULE_DIR);
     return places;
 }

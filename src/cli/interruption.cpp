@@ -1,5 +1,7 @@
 #include "cli/interruption.h"
 
+#include "base/descriptor.h"
+
 #include "penumbra/error.h"
 
 #include <fcntl.h>
@@ -23,7 +25,7 @@ constexpr int patience = 600;  // milliseconds
 constexpr int exit_interrupted = 130;
 
 // A handler may do little more than write to a pipe; a thread at its other end does the rest.
-std::array<int, 2> ends = {-1, -1};
+std::array<Descriptor, 2> ends;
 
 std::mutex leftover_mutex;
 std::filesystem::path leftover;
@@ -31,14 +33,14 @@ std::filesystem::path leftover;
 extern "C" void note_signal(int) {
     const int saved = errno;
     const char byte = 's';
-    [[maybe_unused]] const auto ignored = ::write(ends[1], &byte, 1);
+    [[maybe_unused]] const auto ignored = ::write(ends[1].get(), &byte, 1);
     errno = saved;
 }
 
 // 's': a signal came; 'e' or nothing: the program ends by itself.
 char next_byte() {
     char byte = 'e';
-    while (::read(ends[0], &byte, 1) < 0 && errno == EINTR) {
+    while (::read(ends[0].get(), &byte, 1) < 0 && errno == EINTR) {
     }
     return byte;
 }
@@ -56,7 +58,7 @@ char next_byte() {
 void watch(const std::stop_source& source) {
     if (next_byte() != 's') return;
     source.request_stop();
-    pollfd end = {ends[0], POLLIN, 0};
+    pollfd end = {ends[0].get(), POLLIN, 0};
     if (::poll(&end, 1, patience) > 0 && next_byte() == 'e') return;  // else impatience
     end_now();
 }
@@ -88,9 +90,11 @@ void remove_leftover() {
 }
 
 Interruption::Interruption() {
-    if (::pipe2(ends.data(), O_CLOEXEC) != 0)
+    std::array<int, 2> pipe = {};
+    if (::pipe2(pipe.data(), O_CLOEXEC) != 0)
         throw std::runtime_error(std::string("no pipe: ") + std::strerror(errno));
-    ::fcntl(ends[1], F_SETFL, O_NONBLOCK);
+    ends = {Descriptor(pipe[0]), Descriptor(pipe[1])};
+    ::fcntl(ends[1].get(), F_SETFL, O_NONBLOCK);
     watcher_ = std::jthread(watch, source_);
     handle(note_signal);
 }
@@ -98,9 +102,9 @@ Interruption::Interruption() {
 Interruption::~Interruption() {
     handle(SIG_DFL);
     const char byte = 'e';
-    [[maybe_unused]] const auto ignored = ::write(ends[1], &byte, 1);
+    [[maybe_unused]] const auto ignored = ::write(ends[1].get(), &byte, 1);
     watcher_.join();
-    for (const int end : ends) ::close(end);
+    for (Descriptor& end : ends) end.close();
 }
 
 }  // namespace penumbra::cli

@@ -4,7 +4,6 @@
 #include "base/text/text.h"
 
 #include "penumbra/image.h"
-#include "penumbra/tracer.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -36,13 +35,6 @@ std::string in_users_words(const Arguments& arguments, const LoadOptions& option
     return text.empty() ? message : text;
 }
 
-void expose(const Context& context, Imported& imported) {
-    imported.render.exposure = 0;
-    const NormalisedScene scene = normalise(imported.scene, imported.render);
-    imported.render.exposure = metered_exposure(scene, imported.render, {.stop = context.stop});
-    context.console.detail(fmt::format("exposure: {:+.2f} EV, metered", imported.render.exposure));
-}
-
 }  // namespace
 
 Imported load(const Context& context, const std::vector<fs::path>& inputs) {
@@ -55,11 +47,20 @@ Imported load(const Context& context, const std::vector<fs::path>& inputs,
     try {
         Imported imported = load_scene(inputs, options);
         imported.render.threads = arguments.threads;
-        if (imported.auto_exposure) expose(context, imported);
         return imported;
     } catch (const Error& error) {
         throw Error(error.failure, "", in_users_words(arguments, options, error), error.remedy);
     }
+}
+
+std::unique_ptr<Metered> meter(const Context& context, Imported& imported) {
+    RenderOptions& options = imported.render;
+    if (!imported.auto_exposure) return nullptr;
+    options.exposure = 0;
+    auto metered = std::make_unique<Metered>(normalise(imported.scene, options), options.threads);
+    options.exposure = metered_exposure(metered->tracer(), options, {.stop = context.stop});
+    context.console.detail(fmt::format("exposure: {:+.2f} EV, metered", options.exposure));
+    return metered;
 }
 
 CompareOptions compare_options(const Judging& judging) {
@@ -118,7 +119,8 @@ double sample_count(const RenderOptions& options) {
 }
 
 Rendered render_scene(const Context& context, const NormalisedScene& scene,
-                      const RenderOptions& options, const std::string& name, bool quiet) {
+                      const RenderOptions& options, Metered* metered, const std::string& name,
+                      bool quiet) {
     std::function<void(double)> show;
     if (!quiet) show = context.console.progress(name, sample_count(options), " samples");
     Rendered result;
@@ -130,7 +132,9 @@ Rendered render_scene(const Context& context, const NormalisedScene& scene,
         }
         if (show) show(done);
     };
-    result.image = render(scene, options, {progress, context.stop});
+    const Watch watch = {progress, context.stop};
+    result.image = metered ? metered->tracer_for(scene).render(options, {}, watch)
+                           : render(scene, options, watch);
     result.render_seconds = time.seconds();
     context.console.clear_progress();
     return result;

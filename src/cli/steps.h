@@ -3,10 +3,14 @@
 
 #include "cli/context.h"
 
+#include "penumbra/tracer.h"
+
 #include <nlohmann/json_fwd.hpp>
 
 #include <chrono>
+#include <memory>
 #include <string>
+#include <utility>
 
 namespace penumbra::cli {
 
@@ -21,11 +25,36 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// The scene of `inputs` with all that `options`, else the command line, lays over it. Throws
-/// Error.
+/// The scene of `inputs` with all that `options`, else the command line, lays over it. Its exposure
+/// is still to be metered. Throws Error.
 Imported load(const Context& context, const std::vector<std::filesystem::path>& inputs);
 Imported load(const Context& context, const std::vector<std::filesystem::path>& inputs,
               const LoadOptions& options);
+
+/// A scene in which light was metered, with the trees that took.
+class Metered {
+  public:
+    Metered(NormalisedScene scene, int threads)
+        : scene_(std::move(scene)), tracer_(scene_, threads) {}
+    Metered(const Metered&) = delete;
+    Metered& operator=(const Metered&) = delete;
+
+    const Tracer& tracer() const { return tracer_; }
+    /// For `scene`, which is that one with other light and must outlive this.
+    const Tracer& tracer_for(const NormalisedScene& scene) {
+        tracer_.update(scene);
+        scene_ = {};
+        return tracer_;
+    }
+
+  private:
+    NormalisedScene scene_;
+    Tracer tracer_;
+};
+
+/// Sets the exposure where it is to be metered, and returns what that has prepared: a picture of
+/// the scene needs no other trees. Elsewhere null. Throws Error.
+std::unique_ptr<Metered> meter(const Context& context, Imported& imported);
 
 /// With the mask read. Throws Error (input).
 CompareOptions compare_options(const Judging& judging);
@@ -48,9 +77,10 @@ struct Rendered {
     double build_seconds = 0, render_seconds = 0;
 };
 
-/// Renders with the number of threads of the command line, under a progress bar.
+/// Renders under a progress bar. `metered`, if not null, is of the same scene with other light.
 Rendered render_scene(const Context& context, const NormalisedScene& scene,
-                      const RenderOptions& options, const std::string& name, bool quiet = false);
+                      const RenderOptions& options, Metered* metered, const std::string& name,
+                      bool quiet);
 
 /// Samples in a whole picture, for the rate of the progress bar.
 double sample_count(const RenderOptions& options);

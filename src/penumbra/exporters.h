@@ -1,8 +1,8 @@
 // Scene -> scene descriptions of other renderers: POV-Ray 3.7, which draws the same picture, and
 // Tachyon 0.99, which draws a similar one.
 //
-// Preconditions of all that take a NormalisedScene, asserted: its defects() are none, and the
-// picture has at least one pixel.
+// Precondition of all that take a NormalisedScene, asserted: its defects() are none. They throw
+// Error (usage) where the RenderOptions make no picture.
 #pragma once
 
 #include "penumbra/error.h"
@@ -50,7 +50,8 @@ std::vector<ExportFormat> export_formats();
 /// Writes `scene` in the format that the extension of `file` names: write_pov() or write_tachyon().
 /// Nothing is written where any of the files is an input or, without ExportOptions::replace, there
 /// already and not from an export; images of an earlier export of that name that are no longer
-/// needed are removed. Throws Error (output), also where check_export_file() does.
+/// needed are removed. Throws Error (usage: see RenderOptions; input: not enough memory; output,
+/// also where check_export_file() does).
 Exported export_scene(const NormalisedScene& scene, const RenderOptions& render,
                       const std::filesystem::path& file, const ExportOptions& options = {});
 
@@ -64,7 +65,8 @@ void check_export_file(const std::filesystem::path& file, const ExportOptions& o
 /// depend on nothing but the arguments. Files are written beside their targets and renamed.
 /// PovStyle::include writes one file and FILE_textures/: no .ini, no camera, no light and no
 /// settings; all that it declares carries FILE's name, so that several can be included in one
-/// scene. `file` must end in .pov, or in .inc for PovStyle::include. Precondition:
+/// scene. `file` must end in .pov, or in .inc for PovStyle::include, in letters of
+/// either case. Precondition:
 /// defects(scene.scene).empty(). Throws Error (usage: see RenderOptions; input: not enough memory;
 /// output).
 Exported write_pov(const NormalisedScene& scene, const RenderOptions& render,
@@ -83,9 +85,9 @@ std::string pov_text(const NormalisedScene& scene, const RenderOptions& render,
 /// depend on nothing but the arguments; files are written beside their targets and renamed, the
 /// .dat last. `tachyon FILE.dat -shade_phong`, run in the file's folder, draws a similar picture in
 /// linear light: the same view, geometry, shadows and depth of recursion, each virtual source being
-/// a light; the losses say what Tachyon lacks. Instances are written out. Throws Error (output):
-/// also when `file` does not end in .dat, and when Tachyon could not read the names of its images
-/// (more than 80 bytes).
+/// a light; the losses say what Tachyon lacks. Instances are written out. Precondition: that of
+/// write_pov(). Throws Error (usage: see RenderOptions; output: also when `file` does not end in
+/// .dat, and when Tachyon could not read the names of its images, more than 80 bytes).
 Exported write_tachyon(const NormalisedScene& scene, const RenderOptions& render,
                        const std::filesystem::path& file, const ExportOptions& options = {});
 

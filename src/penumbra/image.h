@@ -1,8 +1,8 @@
 // Pictures: linear float images, textures in their own bit depth, and their files.
 //
-// Every format but PNG goes through OpenImageIO, which lives in a module that is loaded when the
-// first function of this header that touches a file is called (it costs 0.3 s to start; see
-// penumbra/image_module.h).
+// PNG, and reading JPEG, need nothing else. All other formats go through OpenImageIO, which lives
+// in a module that is loaded when the first file of one of them is read or written (it costs 0.3 s
+// to start; see penumbra/image_module.h).
 #pragma once
 
 #include "penumbra/math.h"

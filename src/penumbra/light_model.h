@@ -62,7 +62,7 @@ inline Vec2 map_texcoord(const ImageMap& map, const Vec2& uv) {
     return {t[0] * uv.x + t[1] * uv.y + t[2], t[3] * uv.x + t[4] * uv.y + t[5]};
 }
 
-/// A coverage that is at least this counts as the cutoff: equal numbers must not be told apart by
+/// An alpha that is at least this counts as the cutoff: equal numbers must not be told apart by
 /// their last bit.
 inline double cutoff_threshold(float cutoff) { return double(cutoff) - 1e-6; }
 

@@ -13,7 +13,7 @@ namespace penumbra {
 /// Gives a scene what a picture needs and its author left out: a material for everything without
 /// one, a camera framed on the bounds from front-right-above, and, when it has no light, a rig of
 /// three sources sized to the bounds. `aspect` is width / height. Precondition: that of bounds(),
-/// and aspect > 0.
+/// aspect > 0, and where there are cameras scene.camera is one of them or no_index.
 void complete(Scene& scene, double aspect);
 
 /// Gives `mesh` the tangents that a normal map at `map` needs: per vertex, in the direction in
@@ -48,7 +48,8 @@ Losses drop_normal_maps(Scene& scene);
 
 /// Of opaque facets that lie exactly on one another leaves the first: which of them a ray hits
 /// would be a matter of rounding. Instances that share a mesh get one of their own where others
-/// want it whole. Returns how many facets went.
+/// want it whole. Returns how many facets went. Precondition: the indices of instances, facets and
+/// materials are in range.
 std::size_t drop_coincident_facets(Scene& scene);
 
 /// Parts what lies in one plane and overlaps, with light passing through or in part: facets, the
@@ -58,18 +59,19 @@ std::size_t drop_coincident_facets(Scene& scene);
 /// plane with. Nothing is done where it cannot be seen: to facets that look alike, and where
 /// two bodies touch; nor, in scenes of more than 4 million facets, to meshes that are shown more
 /// than once. The losses say what was done.
-/// Precondition: the indices of instances, facets and materials are in range.
+/// Precondition: that of drop_coincident_facets(). Throws Error (input: not enough memory).
 Losses part_surfaces(Scene& scene);
+
 /// Moves one-sided facets that lie exactly on one another and are shown on opposite sides apart,
 /// each towards its own side, by four times POV-Ray's least distance: a ray that passed the
 /// one which is not there would start where the other is, too near to meet it. Returns how many it
-/// moved. Precondition: the indices of instances and facets are in range.
+/// moved. Precondition: that of drop_coincident_facets().
 std::size_t lift_back_to_back_facets(Scene& scene);
 
 /// A loss for each material whose Sides::front cannot be kept to on some of its meshes: POV-Ray
 /// tells the sides of smooth facets by their normals. Nothing is said of meshes that are closed and
 /// opaque, whose backs nobody sees from outside. Normal maps are to be settled before.
-/// Precondition: that of lift_back_to_back_facets().
+/// Precondition: that of drop_coincident_facets().
 Losses shown_backs(const Scene& scene);
 
 /// What becomes of normal maps, which POV-Ray does not have.

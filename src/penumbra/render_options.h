@@ -4,7 +4,8 @@
 namespace penumbra {
 
 /// How a scene is turned into a picture; the same for the tracer and for POV-Ray. What takes them
-/// throws Error (usage) when a side, `samples` or `max_depth` is less than 1.
+/// throws Error (usage) when a side, `samples` or `max_depth` is less than 1, or `samples` over
+/// 256.
 struct RenderOptions {
     int width = 800, height = 600;  ///< pixels
     int samples = 1;      ///< 1: the pixel's centre; n > 1: n x n grid and the centre once more

@@ -19,16 +19,19 @@ using TakeRows = std::function<void(int first, const Image& rows)>;
 /// Pictures are rendered in bands of so many rows, whatever is done with them.
 inline constexpr int render_band = 32;
 
-/// [first, last) of a picture's rows: multiples of render_band, or the picture's end.
+/// [first, last) of a picture's rows, first <= last: multiples of render_band, or the picture's
+/// end.
 struct RowRange {
     int first = 0, last = 0;
 };
 
 /// A picture as the scene does not ask for it.
 struct Overrides {
-    std::optional<Camera> camera = {};  ///< in the scene's place, in the units of NormalisedScene
-    bool shadows = true;                ///< else nothing hides a source
-    bool penumbrae = true;              ///< else every light is one source
+    /// In the scene's place, in the units of NormalisedScene. Precondition: defects() would find
+    /// nothing in it.
+    std::optional<Camera> camera = {};
+    bool shadows = true;    ///< else nothing hides a source
+    bool penumbrae = true;  ///< else every light is one source
     double dx = 0, dy = 0;  ///< pixels by which every ray starts more to the right and further down
 };
 
@@ -52,8 +55,10 @@ class Tracer {
     /// one costs next to nothing; rays take a little longer. Otherwise only meshes that several
     /// instances show have one, and the others are built again with all that moves. Precondition:
     /// defects(scene.scene).empty(). Throws Error (input) where the acceleration structures would
-    /// take more than memory_limit().
+    /// take more than memory_limit(), or Embree cannot build them.
     explicit Tracer(const NormalisedScene& scene, int threads = 0, bool instances_move = false);
+    /// Nothing would be left to refer to.
+    explicit Tracer(NormalisedScene&& scene, int threads = 0, bool instances_move = false) = delete;
     Tracer(Tracer&& other) noexcept;
     Tracer& operator=(Tracer&& other) noexcept;
     ~Tracer();
@@ -65,6 +70,7 @@ class Tracer {
     /// object or another one. Precondition and errors are those of the constructor; after an error
     /// only update() and the destructor may be called.
     void update(const NormalisedScene& scene);
+    void update(NormalisedScene&& scene) = delete;
 
     /// The scene as its active camera sees it, with POV-Ray 3.7's light model and tolerances.
     /// options.exposure is folded into the scene already. Throws Error (interrupted; usage where
@@ -74,7 +80,8 @@ class Tracer {
 
     /// Some rows of the same picture, without it ever being in memory as a whole: calls `take` for
     /// finished bands from the top, one at a time, on any thread. What it throws ends the
-    /// rendering. Throws Error (interrupted; usage where the options make no picture).
+    /// rendering. Throws Error (interrupted; usage where the options make no picture or `rows` are
+    /// not as RowRange says).
     void render_rows(const RenderOptions& options, const RowRange& rows, const TakeRows& take,
                      const Overrides& overrides = {}, const Watch& watch = {}) const;
 
@@ -91,14 +98,16 @@ class Tracer {
     std::unique_ptr<Prepared> prepared_;
 };
 
-/// Tracer::render() of a scene that is rendered once.
+// Of a scene that is rendered once. These too throw what the constructor of Tracer throws.
+
+/// Tracer::render().
 Image render(const NormalisedScene& scene, const RenderOptions& options, const Watch& watch = {});
 
-/// Tracer::render_rows() of a scene that is rendered once.
+/// Tracer::render_rows().
 void render_rows(const NormalisedScene& scene, const RenderOptions& options, const RowRange& rows,
                  const TakeRows& take, const Watch& watch = {});
 
-/// Tracer::objects_seen() of a scene that is looked at once.
+/// Tracer::objects_seen().
 std::vector<Index> objects_seen(const NormalisedScene& scene, const RenderOptions& options);
 
 /// The exposure, in EV and added to what is folded into the scene, at which the picture looks
@@ -107,6 +116,8 @@ std::vector<Index> objects_seen(const NormalisedScene& scene, const RenderOption
 /// black. Throws what Tracer::render() throws.
 double metered_exposure(const Tracer& tracer, const RenderOptions& options,
                         const Watch& watch = {});
+/// The same of a scene of which nothing else is wanted. Throws also what the constructor of Tracer
+/// throws.
 double metered_exposure(const NormalisedScene& scene, const RenderOptions& options,
                         const Watch& watch = {});
 

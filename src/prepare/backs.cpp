@@ -3,6 +3,7 @@
 #include "prepare/body.h"
 #include "prepare/same_corners.h"
 #include "prepare/scale.h"
+#include "scene/defects.h"
 #include "scene/sides.h"
 #include "scene/tolerances.h"
 #include "scene/transforms.h"
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <set>
@@ -42,9 +44,9 @@ bool sort(std::array<Vec3f, 3>& corners) {
 }
 
 // Of facets with the same corners it is the same for those that are shown on one side.
-bool turn_of(const World& world, const Placed& placed) {
-    auto places = corners(world, placed);
-    return sort(places) != (world.scene.instances[placed.instance].transform.determinant() < 0);
+bool turn_of(const LocalPositions& local, const Placed& placed) {
+    auto places = corners(local, placed);
+    return sort(places) != (local.scene.instances[placed.instance].transform.determinant() < 0);
 }
 
 // Those that show one side; of scenes with more than most_facets, only what is shown once.
@@ -101,15 +103,16 @@ std::string what_shows(const Backs& backs) {
 }  // namespace
 
 std::size_t lift_back_to_back_facets(Scene& scene) {
+    assert(all_indices_in_range(scene));
     const std::vector<Index> asked = one_sided_instances(scene);
     if (asked.empty()) return 0;
-    const World world{scene};
-    const std::vector<Placed> facets = suspects(world, asked);
+    const LocalPositions local{scene};
+    const std::vector<Placed> facets = suspects(local, asked);
     std::map<Index, std::pair<Index, std::set<Index>>> lifted;  // by mesh: an instance, facets
     for (std::size_t i = 1, first = 0; i < facets.size(); ++i) {
         if (facets[i].hash != facets[first].hash) first = i;
-        if (first == i || turn_of(world, facets[i]) == turn_of(world, facets[first]) ||
-            !same_corners(corners(world, facets[first]), corners(world, facets[i])))
+        if (first == i || turn_of(local, facets[i]) == turn_of(local, facets[first]) ||
+            !same_corners(corners(local, facets[first]), corners(local, facets[i])))
             continue;
         for (const Placed& one : {facets[first], facets[i]}) {
             auto& [instance, of_mesh] = lifted[scene.instances[one.instance].mesh];
@@ -130,6 +133,7 @@ std::size_t lift_back_to_back_facets(Scene& scene) {
 }
 
 Losses shown_backs(const Scene& scene) {
+    assert(all_indices_in_range(scene));
     std::map<Index, Backs> worst;  // by material
     const std::vector<Backs> all = backs(scene);
     std::map<Index, bool> bodies;  // by mesh

@@ -1,11 +1,12 @@
 #include "prepare/body.h"
 
 #include "base/hash.h"
+#include "scene/defects.h"
 
 #include "penumbra/scene.h"
 
 #include <array>
-#include <bit>
+#include <cassert>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -23,8 +24,8 @@ namespace {
 
 // Different for (a, b) and (b, a).
 std::uint64_t hash_of_edge(std::uint64_t a, std::uint64_t b) {
-    const std::uint64_t mixed = (a ^ std::rotl(b, 31)) * 0x9E3779B97F4A7C15U;
-    return mixed ^ (mixed >> 32U);
+    const std::array ends = {a, b};
+    return hash_of(std::as_bytes(std::span(ends)));
 }
 
 // Vertices by their places, to a millionth of the mesh: seams are closed but for rounding.
@@ -47,6 +48,7 @@ std::vector<std::uint64_t> places_of(const Mesh& mesh) {
 // Every edge then runs as often one way as the other, so that a sum over the hashes of both ways
 // is 0, and the volume is positive (the sum of the tetrahedra between one point and the facets).
 bool bounds_body(const Mesh& mesh) {
+    assert(indices_in_range(mesh));
     const std::vector<std::uint64_t> places = places_of(mesh);
     std::uint64_t open = 0;
     double volume = 0;

@@ -1,11 +1,13 @@
 // Facets that lie exactly on one another: which of them a ray hits is a matter of rounding.
 #include "prepare/same_corners.h"
 #include "prepare/scale.h"
+#include "scene/defects.h"
 
 #include "penumbra/prepare.h"
 #include "penumbra/scene.h"
 
 #include <algorithm>
+#include <cassert>
 #include <map>
 #include <utility>
 #include <vector>
@@ -74,18 +76,19 @@ bool shows_all_of(const Scene& scene, const Placed& kept, const Placed& other) {
 }  // namespace
 
 std::size_t drop_coincident_facets(Scene& scene) {
+    assert(all_indices_in_range(scene));
     std::vector<std::size_t> uses(scene.meshes.size(), 0);
     for (const Instance& i : scene.instances) ++uses[i.mesh];
     const std::vector<Index> asked = instances_to_ask(scene, uses);
     if (asked.empty()) return 0;
-    const World world{scene};
-    const std::vector<Placed> facets = suspects(world, asked);
+    const LocalPositions local{scene};
+    const std::vector<Placed> facets = suspects(local, asked);
     std::map<Index, std::vector<Index>> dropped;  // by instance
     std::size_t count = 0;
     for (std::size_t i = 1, first = 0; i < facets.size(); ++i) {
         if (facets[i].hash != facets[first].hash) first = i;
         if (first == i || !shows_all_of(scene, facets[first], facets[i]) ||
-            !same_corners(corners(world, facets[first]), corners(world, facets[i])))
+            !same_corners(corners(local, facets[first]), corners(local, facets[i])))
             continue;
         dropped[facets[i].instance].push_back(facets[i].facet);
         ++count;

@@ -1,7 +1,10 @@
 // What a picture needs and its author left out: material, camera, lights.
 #include "prepare/complete.h"
 
+#include "scene/defects.h"
+
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace penumbra {
@@ -174,16 +177,19 @@ Bounds stage(const Scene& scene) {
 }
 
 void frame(Camera& camera, const Bounds& box, double aspect) {
+    assert(box.radius() > 0 && aspect > 0);
     if (camera.projection == Camera::Projection::orthographic)
         return frame_orthographic(camera, box, aspect);
     frame_perspective(camera, box, aspect);
 }
 
 void complete(Scene& scene, double aspect) {
+    assert(indices_in_range(scene) && aspect > 0);
     give_material(scene, scene.meshes);
     give_material(scene, scene.spheres);
     give_material(scene, scene.planes);
     give_camera(scene, aspect);
+    assert(scene.camera < scene.cameras.size());
     if (scene.lights.empty()) give_lights(scene);
 }
 

@@ -14,7 +14,7 @@ Bounds stage(const Scene& scene);
 
 /// Moves `camera` along and across its direction of view until the corners of `box` fill its
 /// picture but for a margin of 6 % at the nearest edges. An orthographic camera also gets its
-/// extent. Precondition: `box` has a radius above 0.
+/// extent. Precondition: `box` has a radius above 0, and `aspect`, width / height, is above 0.
 void frame(Camera& camera, const Bounds& box, double aspect);
 
 }  // namespace penumbra

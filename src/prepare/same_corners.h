@@ -18,9 +18,9 @@ struct Placed {
     Index instance = 0, facet = 0;
 };
 
-/// What is asked of a scene, and where its positions are counted from: in float32, in which
-/// neighbours are the same place, they must not be far away.
-struct World {
+/// A scene, and where its positions are counted from: in float32, in which neighbours are the same
+/// place, they must not be far away.
+struct LocalPositions {
     const Scene& scene;
     Vec3 origin = local_origin(bounds(scene));
 
@@ -31,13 +31,13 @@ struct World {
 
 /// Facets of the instances of which there may be several with the same corners, most likely all of
 /// them; sorted, so that these follow one another, those of the first instance first.
-std::vector<Placed> suspects(const World& world, const std::vector<Index>& instances);
+std::vector<Placed> suspects(const LocalPositions& local, const std::vector<Index>& instances);
 
 /// False where nothing is to be done by lift_back_to_back_facets() and drop_coincident_facets().
 bool may_coincide(const Scene& scene);
 
 /// In the order of the mesh.
-std::array<Vec3f, 3> corners(const World& world, const Placed& placed);
+std::array<Vec3f, 3> corners(const LocalPositions& local, const Placed& placed);
 
 /// In whatever order.
 bool same_corners(std::array<Vec3f, 3> a, std::array<Vec3f, 3> b);

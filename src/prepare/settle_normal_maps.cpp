@@ -1,7 +1,10 @@
 // What becomes of normal maps, as the user chose.
+#include "scene/defects.h"
 #include "scene/normal_map.h"
 
 #include "penumbra/prepare.h"
+
+#include <cassert>
 
 namespace penumbra {
 
@@ -13,6 +16,7 @@ constexpr std::size_t most_baked_facets = 100'000;
 }  // namespace
 
 Losses settle_normal_maps(Scene& scene, NormalMaps choice) {
+    assert(surface_defects(scene).empty());
     switch (choice) {
     case NormalMaps::bake: return bake_normal_maps(scene, {.facets = most_baked_facets});
     case NormalMaps::drop: return drop_normal_maps(scene);

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -140,6 +141,7 @@ void note_invisible(const Scene& scene, const std::vector<Object>& objects, cons
 }  // namespace
 
 Losses losses_by_size(const Scene& scene, const Bounds& box, int width, int height) {
+    assert(scene.camera < scene.cameras.size());
     Losses losses;
     const std::vector<Object> objects = objects_of(scene);
     note_eaten(objects, box, losses);

@@ -1,12 +1,14 @@
 // Per-vertex tangents of texture coordinates.
 #include "base/memory.h"
 #include "prepare/weld.h"
+#include "scene/defects.h"
 #include "scene/normal_map.h"
 #include "scene/vertex_arrays.h"
 
 #include "penumbra/light_model.h"
 #include "penumbra/prepare.h"
 
+#include <cassert>
 #include <cmath>
 
 namespace penumbra {
@@ -131,6 +133,7 @@ class Twins {
 }  // namespace
 
 void compute_tangents(Mesh& mesh, const ImageMap& map) {
+    assert(indices_in_range(mesh));
     if (mesh.texcoords.empty()) return;
     if (mesh.normals.empty()) give_facet_normals(mesh);
     const MemoryClaim claim(mesh.positions.size() * (2 * sizeof(Vec3) + 4 * sizeof(Index)) +

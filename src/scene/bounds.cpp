@@ -1,9 +1,11 @@
 // How large a scene is.
+#include "scene/defects.h"
 #include "scene/transforms.h"
 
 #include "penumbra/scene.h"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <optional>
 
@@ -45,7 +47,10 @@ struct Corners {
 
 }  // namespace
 
-Bounds box_around_facets(const Mesh& mesh) { return Corners(mesh).box; }
+Bounds box_around_facets(const Mesh& mesh) {
+    assert(indices_in_range(mesh));
+    return Corners(mesh).box;
+}
 
 namespace {
 
@@ -77,6 +82,7 @@ std::vector<std::size_t> far_ones_first(const std::vector<Bounds>& boxes) {
 }  // namespace
 
 Bounds bounds(const Scene& scene) {
+    assert(indices_in_range(scene));
     std::vector<std::optional<Corners>> corners(scene.meshes.size());
     std::vector<Bounds> boxes;  // around the instances, not tight
     for (const Instance& instance : scene.instances) {
@@ -108,8 +114,10 @@ Bounds bounds(const Scene& scene) {
 
 std::size_t facet_count(const Scene& scene) {
     std::size_t count = 0;
-    for (const Instance& instance : scene.instances)
+    for (const Instance& instance : scene.instances) {
+        assert(instance.mesh < scene.meshes.size());
         count += scene.meshes[instance.mesh].triangles.size();
+    }
     return count;
 }
 

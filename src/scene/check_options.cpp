@@ -15,6 +15,11 @@ void check(const RenderOptions& options) {
                         options.height));
     require(options.samples >= 1,
             fmt::format("a picture must have at least 1 sample a pixel, not {}", options.samples));
+    // An edge then has 65,536 steps, all that 16 bits can show.
+    constexpr int most_samples = 256;
+    require(options.samples <= most_samples,
+            fmt::format("a picture must have at most {0} x {0} samples a pixel, not {1} x {1}",
+                        most_samples, options.samples));
     require(options.max_depth >= 1,
             fmt::format("a path must have at least 1 ray segment, not {}", options.max_depth));
 }

@@ -92,20 +92,23 @@ struct Examiner {
             case MapUse::transmission: return map(image, who, "diffuse transmission");
             case MapUse::blend: return map(image, who, "second look");
             case MapUse::normal: return map(image, who, "normal map");
-            case MapUse::alpha: return left_out ? void() : map(image, who, "coverage");
-            case MapUse::lobe_color: return left_out ? void() : map(image, who, "gloss");
-            case MapUse::lobe_level: return left_out ? void() : map(image, who, "gloss level");
+            case MapUse::alpha: return left_out ? void() : map(image, who, "alpha map");
+            case MapUse::lobe_color:
+                return left_out ? void() : map(image, who, "specular lobes' colour");
+            case MapUse::lobe_level:
+                return left_out ? void() : map(image, who, "specular lobes' level");
             }
         });
-        require(!m.specular_lobes ||
-                    (!m.specular_lobes->lobes.empty() && m.specular_lobes->lobes.size() <= 16),
-                who + " has a gloss of no lobes or of more than 16");
+        const std::size_t lobes = m.specular_lobes ? m.specular_lobes->lobes.size() : 1;
+        require(lobes >= 1 && lobes <= 16,
+                fmt::format("{} has {} specular lobes, not 1 to 16", who, lobes));
         if (m.specular_lobes)
             for (const SpecularLobe& lobe : m.specular_lobes->lobes)
                 require(lobe.roughness >= 0 && lobe.roughness <= 1,
-                        who + " has a gloss with a roughness outside [0, 1]");
+                        who + " has a specular lobe with a roughness outside [0, 1]");
         require(m.opacity == 1 || (!m.emission_map && !m.specular_lobes),
-                who + " is translucent and has an emission map or a gloss, which need it opaque");
+                who + " is translucent and has an emission map or specular lobes, which need it "
+                      "opaque");
         require(m.opacity == 1 || !m.diffuse_transmission_map,
                 who + " is translucent and has an image of diffuse transmission, which needs it "
                       "opaque");
@@ -130,10 +133,7 @@ struct Examiner {
                 who + " has a position that is not finite");
         require(std::all_of(m.normals.begin(), m.normals.end(), finite_vector<Vec3f>),
                 who + " has a normal that is not finite");
-        require(std::all_of(
-                    m.triangles.begin(), m.triangles.end(),
-                    [&](const auto& t) { return t[0] < count && t[1] < count && t[2] < count; }),
-                who + " has a facet that refers to a missing vertex");
+        require(indices_in_range(m), who + " has a facet that refers to a missing vertex");
         material_of(m.material, who);
     }
 
@@ -211,6 +211,37 @@ std::vector<std::string> surface_defects(const Scene& scene) {
     for (const Material& m : scene.materials) examine.material(m);
     for (const Mesh& m : scene.meshes) examine.mesh(m);
     return std::move(examine.found);
+}
+
+std::vector<std::string> camera_defects(const Camera& camera) {
+    const Scene none;
+    Examiner examine{none};
+    examine.camera(camera);
+    return std::move(examine.found);
+}
+
+bool indices_in_range(const Mesh& mesh) {
+    const std::size_t count = mesh.positions.size();
+    return std::ranges::all_of(mesh.triangles, [&](const auto& t) {
+        return t[0] < count && t[1] < count && t[2] < count;
+    });
+}
+
+bool indices_in_range(const Scene& scene) {
+    return std::ranges::all_of(scene.meshes,
+                               [](const Mesh& mesh) { return indices_in_range(mesh); }) &&
+           std::ranges::all_of(scene.instances, [&](const Instance& instance) {
+               return instance.mesh < scene.meshes.size();
+           });
+}
+
+bool all_indices_in_range(const Scene& scene) {
+    const auto has_material = [&](const auto& thing) {
+        return thing.material < scene.materials.size();
+    };
+    return indices_in_range(scene) && std::ranges::all_of(scene.meshes, has_material) &&
+           std::ranges::all_of(scene.spheres, has_material) &&
+           std::ranges::all_of(scene.planes, has_material);
 }
 
 }  // namespace penumbra

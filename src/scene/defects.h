@@ -1,4 +1,4 @@
-// Which rules a scene breaks before it is complete.
+// Which rules a part of a scene breaks, also before it is complete: for preconditions.
 #pragma once
 
 #include "penumbra/scene.h"
@@ -7,5 +7,15 @@ namespace penumbra {
 
 /// What defects() finds in the materials and meshes.
 std::vector<std::string> surface_defects(const Scene& scene);
+
+/// What defects() finds in `camera`.
+std::vector<std::string> camera_defects(const Camera& camera);
+
+/// Has every facet its vertices, and every instance its mesh?
+bool indices_in_range(const Mesh& mesh);
+bool indices_in_range(const Scene& scene);
+
+/// Has also everything its material?
+bool all_indices_in_range(const Scene& scene);
 
 }  // namespace penumbra

@@ -3,6 +3,8 @@
 
 #include "penumbra/scene.h"
 
+#include <cassert>
+
 namespace penumbra {
 
 enum class ObjectKind { instance, sphere, plane };
@@ -19,6 +21,7 @@ inline std::size_t object_count(const Scene& scene) {
 
 /// Where object number `object` stands. Precondition: object < object_count(scene).
 inline ObjectPlace place_of(const Scene& scene, Index object) {
+    assert(object < object_count(scene));
     std::size_t i = object;
     if (i < scene.instances.size()) return {ObjectKind::instance, i};
     i -= scene.instances.size();

@@ -1,5 +1,7 @@
 #include "scene/scene_bulk.h"
 
+#include <cassert>
+
 namespace penumbra {
 
 namespace {
@@ -26,6 +28,7 @@ void restore_all_but_bulk(Scene& scene, const Scene& kept) {
     std::vector<Mesh> meshes = std::move(scene.meshes);
     std::vector<Texture> textures = std::move(scene.textures);
     scene = kept;
+    assert(textures.size() >= scene.textures.size());
     scene.meshes = std::move(meshes);
     for (std::size_t i = 0; i < scene.textures.size(); ++i)
         scene.textures[i].raster = std::move(textures[i].raster);

@@ -1,7 +1,10 @@
 #include "scene/sides.h"
 
+#include "scene/defects.h"
+
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <optional>
 
@@ -92,6 +95,7 @@ bool conformal(const Matrix& m) {
 }  // namespace
 
 std::vector<Backs> backs(const Scene& scene) {
+    assert(indices_in_range(scene));
     std::vector<Backs> found;
     std::vector<std::optional<Backs>> known(scene.meshes.size());
     found.reserve(scene.instances.size());

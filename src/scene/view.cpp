@@ -1,5 +1,7 @@
 #include "scene/view.h"
 
+#include "scene/defects.h"
+
 #include <cassert>
 #include <cmath>
 
@@ -7,6 +9,7 @@ namespace penumbra {
 
 View view_of(const Camera& camera, int width, int height) {
     assert(width >= 1 && height >= 1);
+    assert(camera_defects(camera).empty());
     const Vec3 forward = camera.direction.normalized();
     const Vec3 right = forward.cross(camera.up).normalized();
     const Vec3 up = right.cross(forward);

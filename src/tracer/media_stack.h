@@ -4,6 +4,7 @@
 #include "penumbra/math.h"
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <deque>
 
@@ -25,7 +26,10 @@ class MediumStack {
 
     std::uint32_t count() const { return last_ == nullptr ? 0 : last_->depth; }
     /// The one entered last. Precondition: count() > 0.
-    Index last() const { return last_->object; }
+    Index last() const {
+        assert(last_ != nullptr);
+        return last_->object;
+    }
     bool contains(Index object) const {
         for (const Medium* m = last_; m != nullptr; m = m->around)
             if (m->object == object) return true;

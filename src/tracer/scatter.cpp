@@ -75,7 +75,7 @@ bool transmit(const PreparedScene& prepared, const SurfacePoints& surfaces, std:
         onward.next.push(position, bent.normalized(), through);
         return false;
     }
-    // POV-Ray does not filter what is reflected totally; a gap in the coverage reflects as well.
+    // POV-Ray does not filter what is reflected totally; a hole of the alpha map reflects as well.
     const double share = material.opacity < 1 ? 1 : 1 - surfaces.alpha[slot];
     Path back = path;
     ++back.level;

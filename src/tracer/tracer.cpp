@@ -1,10 +1,12 @@
 #include "penumbra/tracer.h"
 
 #include "scene/check_options.h"
+#include "scene/defects.h"
 #include "tracer/accel/embree.h"
 #include "tracer/prepared/prepared_scene.h"
 #include "tracer/tiles.h"
 
+#include <fmt/format.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -51,12 +53,23 @@ void take_picture(const PreparedScene& prepared, const RenderOptions& options,
     check(options);
     const Scene& scene = prepared.scene;
     const Camera camera = overrides.camera.value_or(scene.cameras[scene.camera]);
+    assert(camera_defects(camera).empty());
     const Shift shift = {overrides.dx, overrides.dy};
     with_threads(options.threads, [&] {
         if (!need_copy(overrides, camera)) return work(Shot{prepared, camera, options, shift});
         const PreparedScene copy = overridden(prepared, overrides, camera);
         work(Shot{copy, camera, options, shift});
     });
+}
+
+void check(const RowRange& rows, int height) {
+    const auto ends_band = [&](int row) { return row % render_band == 0 || row == height; };
+    if (rows.first < 0 || rows.last < rows.first || rows.last > height || !ends_band(rows.first) ||
+        !ends_band(rows.last))
+        throw Error(Failure::usage, "",
+                    fmt::format("the rows from {} to {} are no range of a picture of {} rows, or "
+                                "begin or end within a band of {}",
+                                rows.first, rows.last, height, render_band));
 }
 
 }  // namespace
@@ -103,6 +116,9 @@ Image Tracer::render(const RenderOptions& options, const Overrides& overrides,
 
 void Tracer::render_rows(const RenderOptions& options, const RowRange& rows, const TakeRows& take,
                          const Overrides& overrides, const Watch& watch) const {
+    check(options);
+    check(rows, options.height);
+    if (rows.first == rows.last) return;
     take_picture(*prepared_->scene, options, overrides, [&](const Shot& shot) {
         if (watch.progress) watch.progress(0);
         render_tiles(shot, rows, take, watch);

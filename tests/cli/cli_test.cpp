@@ -92,6 +92,8 @@ TEST_CASE("a wrong command line exits with 2 and one sentence") {
           "such as 0.1,0.1,0.2\n");
     CHECK(error_of({"render", "a.obj", "--depth", "16", "-o", "a.exr"}) ==
           "penumbra: error: --depth: 16 bits are for .png and .tif, not .exr\n");
+    CHECK(error_of({"render", "a.obj", "--depth", "16", "-o", "a.JPG"}) ==
+          "penumbra: error: --depth: 16 bits are for .png and .tif, not .jpg\n");
     CHECK(error_of({"compare", "a.png"}) == "penumbra: error: compare takes two pictures or two "
                                             "folders, not 1 (see 'penumbra compare --help')\n");
     CHECK(error_of({"compare", "a.png", "b.png", "--profile", "lax"}).find("lax") !=

@@ -1,7 +1,8 @@
 # Installs penumbra to a scratch prefix, builds this folder's project against the package, runs it,
 # and checks that the README shows the very program that was built.
 #
-# Wants BUILD_DIR, MODULE_DIR (relative to the prefix), CONFIG, CXX, CXX_FLAGS, LINK_FLAGS and SCENE.
+# Wants BUILD_DIR, MODULE_DIR (relative to the prefix), INSTALLED_MODULE_DIR, CONFIG, CXX, CXX_FLAGS,
+# LINK_FLAGS and SCENE.
 set(here ${CMAKE_CURRENT_LIST_DIR})
 set(work ${BUILD_DIR}/package)
 file(REMOVE_RECURSE ${work})
@@ -28,11 +29,18 @@ foreach(file picture.png picture.pov picture.ini)
         message(FATAL_ERROR "the consumer wrote no ${file}")
     endif()
 endforeach()
-# The installed program finds its image module beside itself, wherever the prefix was moved.
+# The installed program finds its image module, which an .exr needs, beside itself, wherever the prefix
+# was moved, and nowhere else: neither in the build folder nor where the prefix was before.
 unset(ENV{PENUMBRA_MODULE_DIR})
 if(EXISTS ${work}/moved/bin/penumbra)
-    execute_process(COMMAND ${work}/moved/bin/penumbra render ${SCENE} --size 32x24 --quiet
-        -o ${work}/program.png COMMAND_ERROR_IS_FATAL ANY)
+    set(render ${work}/moved/bin/penumbra render ${SCENE} --size 32x24 --quiet -o)
+    execute_process(COMMAND ${render} ${work}/program.exr COMMAND_ERROR_IS_FATAL ANY)
+    file(RENAME ${work}/moved/${MODULE_DIR} ${work}/modules)
+    execute_process(COMMAND ${render} ${work}/without.exr RESULT_VARIABLE status ERROR_VARIABLE problem)
+    # Not to be asked where penumbra is installed for good.
+    if(NOT EXISTS ${INSTALLED_MODULE_DIR} AND NOT status EQUAL 4)
+        message(FATAL_ERROR "without its image module the program ends with ${status}: ${problem}")
+    endif()
 endif()
 
 file(READ ${here}/main.cpp program)

@@ -76,6 +76,38 @@ Scene golden() {
     return scene;
 }
 
+// What Tachyon cannot show as it is.
+Scene beyond_tachyon() {
+    Scene scene = stage();
+    scene.background = Color(0.5F);
+    scene.textures = {two_texels()};
+    scene.sky = Sky{.texture = 0};
+    scene.lights = {{.name = "cone",
+                     .type = Light::Type::spot,
+                     .attenuation = Attenuation{.distance = 1, .power = 3}}};
+    scene.materials = {
+        {.name = "gold", .ambient = {0.1F, 0, 0}, .metallic = 0.6F, .reflection = {0.6F, 0.5F, 0}},
+        {.name = "glass",
+         .emission = Color(1),
+         .opacity = 0.5F,
+         .transmission = 1,
+         .ior = 1.5F,
+         .fresnel = true,
+         .absorption = Absorption{}},
+        {.name = "leaf",
+         .pattern = ImageMap{.texture = 0},
+         .alpha_map = AlphaMap{.map = {.texture = 0}}},
+        {.pattern = ImageMap{.texture = 0}}};
+    scene.materials[1].reflection = Color(1);
+    scene.materials[2].specular_lobes = SpecularLobes{.lobes = {{}, {}}};
+    scene.textures[0].wrap_u = Wrap::clamp;
+    for (Index i = 0; i < 3; ++i) scene.spheres.push_back({"", Vec3(i, 0, 0), 1, i});
+    scene.planes = {{"floor", {}, {0, 1, 0}, 3}};
+    test::add_quad(scene, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, 0);
+    scene.meshes[0].colors = std::vector(4, Color(0.5F));
+    return scene;
+}
+
 // Tachyon's picture of a .dat, linear; nothing where it is not installed.
 Image drawn(const test::TempDir& folder, const std::string& file) {
     const auto tachyon = find_program("tachyon");
@@ -130,33 +162,6 @@ TEST_CASE("a Tachyon scene, equals the reviewed file") {
 
 TEST_CASE("a Tachyon scene, says what Tachyon lacks") {
     CHECK(Written(stage()).exported.losses.empty());
-    Scene scene = stage();
-    scene.background = Color(0.5F);
-    scene.textures = {two_texels()};
-    scene.sky = Sky{.texture = 0};
-    scene.lights = {{.name = "cone",
-                     .type = Light::Type::spot,
-                     .attenuation = Attenuation{.distance = 1, .power = 3}}};
-    scene.materials = {
-        {.name = "gold", .ambient = {0.1F, 0, 0}, .metallic = 0.6F, .reflection = {0.6F, 0.5F, 0}},
-        {.name = "glass",
-         .emission = Color(1),
-         .opacity = 0.5F,
-         .transmission = 1,
-         .ior = 1.5F,
-         .fresnel = true,
-         .absorption = Absorption{}},
-        {.name = "leaf",
-         .pattern = ImageMap{.texture = 0},
-         .alpha_map = AlphaMap{.map = {.texture = 0}}},
-        {.pattern = ImageMap{.texture = 0}}};
-    scene.materials[1].reflection = Color(1);
-    scene.materials[2].specular_lobes = SpecularLobes{.lobes = {{}, {}}};
-    scene.textures[0].wrap_u = Wrap::clamp;
-    for (Index i = 0; i < 3; ++i) scene.spheres.push_back({"", Vec3(i, 0, 0), 1, i});
-    scene.planes = {{"floor", {}, {0, 1, 0}, 3}};
-    test::add_quad(scene, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, 0);
-    scene.meshes[0].colors = std::vector(4, Color(0.5F));
     RenderOptions options = small;
     options.samples = 3;
     const Losses expected = {
@@ -185,7 +190,7 @@ TEST_CASE("a Tachyon scene, says what Tachyon lacks") {
         {Loss::approximated, "leaf", "the pattern becomes its mean colour"},
         {Loss::dropped, "mesh", "vertex colours are left out"},
     };
-    const Written written(scene, options);
+    const Written written(beyond_tachyon(), options);
     for (const Loss& loss : expected) {
         INFO(loss.place << ": " << loss.what);
         CHECK(std::find(written.exported.losses.begin(), written.exported.losses.end(), loss) !=
@@ -279,6 +284,22 @@ TEST_CASE("the formats of scenes, are chosen by the extension") {
     CHECK(extensions == std::vector<std::string>{".pov", ".inc", ".dat"});
 }
 
+TEST_CASE("the formats of scenes, are told in upper case too") {
+    const test::TempDir folder;
+    const NormalisedScene scene = test::as_is(stage());
+    for (const char* name : {"a.POV", "b.Dat", "c.INC"}) {
+        const auto file = folder / name;
+        const ExportOptions options = {.pov_style =
+                                           *name == 'c' ? PovStyle::include : PovStyle::standalone};
+        check_export_file(file, options);
+        CHECK(export_scene(scene, small, file, options).files[0] == file);
+        CHECK(test::fs::exists(file));
+    }
+    CHECK(has(test::read(folder / "a.ini"), "Input_File_Name=\"a.POV\""));
+    CHECK(test::message_of([&] { check_export_file("a.INC"); }) ==
+          "a.INC: a POV-Ray scene must end in .pov");
+}
+
 TEST_CASE("the formats of scenes, are listed for another extension") {
     const auto message = [&](const std::string& file, PovStyle style = PovStyle::standalone) {
         return test::message_of([&] { check_export_file(file, {.pov_style = style}); });
@@ -288,7 +309,7 @@ TEST_CASE("the formats of scenes, are listed for another extension") {
     CHECK(message("a.gltf") == "a.gltf: unknown scene format" + list);
     CHECK(message("a") == "a: its name has no extension" + list);
     CHECK(message("a.povv") == "a.povv: unknown scene format (did you mean '.pov'?)");
-    CHECK(message("a.DAT") == "a.DAT: unknown scene format (did you mean '.dat'?)");
+    CHECK(message("a.POVV") == "a.POVV: unknown scene format (did you mean '.pov'?)");
     CHECK(message("a.inc") == "a.inc: a POV-Ray scene must end in .pov");
     CHECK(message("a.dat", PovStyle::include) ==
           "a.dat: an include file of POV-Ray must end in .inc or .pov");

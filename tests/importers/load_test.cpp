@@ -3,18 +3,9 @@
 #include "support/inputs.h"
 
 using namespace penumbra;
-using test::Inputs, test::Studio, test::material_of, test::near;
+using test::Inputs, test::Studio, test::facet_obj, test::material_of, test::near;
 
 namespace {
-
-// One facet in the x-z plane with its right angle at the origin.
-const char* const triangle = R"(
-v 0 0 0
-v 1 0 0
-v 0 0 1
-usemtl paint
-f 1 2 3
-)";
 
 // Two cameras and a light.
 const char* const stage = R"({
@@ -30,16 +21,6 @@ const char* const stage = R"({
     "extensionsUsed": ["KHR_lights_punctual"],
     "extensions": {"KHR_lights_punctual": {"lights": [{"name": "Bulb", "type": "point"}]}}
 })";
-
-// Where the instance puts the corners of the triangle.
-std::array<Vec3, 3> corners(const Scene& scene, std::size_t instance) {
-    const Instance& placed = scene.instances.at(instance);
-    const Mesh& mesh = scene.meshes.at(placed.mesh);
-    std::array<Vec3, 3> points;
-    for (std::size_t i = 0; i < 3; ++i)
-        points[i] = Vec3(mesh.positions[mesh.triangles.at(0)[i]]) * placed.transform;
-    return points;
-}
 
 }  // namespace
 
@@ -117,102 +98,9 @@ TEST_CASE("A camera follows the shape of the picture") {
     CHECK(distance("[400, 100]") > 2 * distance("[100, 100]"));
 }
 
-TEST_CASE("A model is placed: scaled, rotated about x, y and z, and moved") {
-    Inputs inputs;
-    inputs.file("t.obj", triangle);
-    inputs.file("a.toml", "[[model]]\nfile = \"t.obj\"\nscale = 2\nrotate = [90, 90, 0]\n"
-                          "translate = [10, 0, 0]");
-    const Scene scene = inputs.load({"a.toml"}).scene;
-    const auto points = corners(scene, 0);
-    // (1, 0, 0): x keeps it, then about y it goes to -z. (0, 0, 1): about x to -y.
-    CHECK(points[0] == Vec3(10, 0, 0));
-    CHECK(points[1] == Vec3(10, 0, -2));
-    CHECK(points[2] == Vec3(10, -2, 0));
-}
-
-TEST_CASE("A model is placed by a column-major matrix") {
-    Inputs inputs;
-    inputs.file("t.obj", triangle);
-    inputs.file("a.toml", "[[model]]\nfile = \"t.obj\"\n"
-                          "matrix = [0,0,-1,0, 0,1,0,0, 1,0,0,0, 5,6,7,1]");
-    const auto points = corners(inputs.load({"a.toml"}).scene, 0);
-    CHECK(points[0] == Vec3(5, 6, 7));
-    CHECK(points[1] == Vec3(5, 6, 6));
-    CHECK(points[2] == Vec3(6, 6, 7));
-}
-
-TEST_CASE("A model's absorption has its scale") {
-    const test::json volume = {
-        {"thicknessFactor", 1}, {"attenuationDistance", 0.5}, {"attenuationColor", {1, 0.5, 0.25}}};
-    Inputs inputs;
-    inputs.file("glass.gltf",
-                test::with_material(
-                    {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}},
-                     {"extensions",
-                      {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
-                       {"KHR_materials_volume", volume}}}})
-                    .text());
-    inputs.file("a.toml", "[[model]]\nfile = \"glass.gltf\"\nscale = 2\n"
-                          "[[model]]\nfile = \"glass.gltf\"\n"
-                          "[[model]]\nfile = \"glass.gltf\"\nscale = 2\ntranslate = [9, 0, 0]\n");
-    const Scene scene = inputs.load({"a.toml"}).scene;
-    REQUIRE(scene.instances.size() == 3);
-    const auto distance = [&](std::size_t instance) {
-        const Mesh& mesh = scene.meshes.at(scene.instances[instance].mesh);
-        return scene.materials.at(mesh.material).absorption.value().distance;
-    };
-    CHECK(distance(0) == Approx(1));
-    CHECK(distance(1) == Approx(0.5));
-    CHECK(distance(2) == Approx(1));
-    CHECK(scene.meshes.size() == 2);
-}
-
-TEST_CASE("A model setting places an input, and a model of a sidecar") {
-    Inputs inputs;
-    inputs.file("t.obj", triangle);
-    const Scene scene =
-        inputs.set({"t.obj"}, {"model.0.translate=[0,3,0]", "model.0.name=tri"}).scene;
-    CHECK(corners(scene, 0)[0] == Vec3(0, 3, 0));
-    CHECK(scene.instances.at(0).name.rfind("tri", 0) == 0);
-    inputs.file("a.toml", "[[model]]\nfile = \"t.obj\"\ntranslate = [1, 0, 0]");
-    const Scene two = inputs.set({"t.obj", "a.toml"}, {"model.1.scale=3"}).scene;
-    CHECK(corners(two, 1)[1] == Vec3(4, 0, 0));
-}
-
-TEST_CASE("A model that is placed twice is stored once") {
-    Inputs inputs;
-    inputs.file("sub/t.obj", triangle);
-    inputs.file("a.toml", "[material.red]\n[[model]]\nfile = \"sub/t.obj\"\n[[model]]\n"
-                          "file = \"sub/../sub/t.obj\"\ntranslate = [1, 0, 0]\n"
-                          "[[model]]\nfile = \"sub/t.obj\"\nmaterial = \"red\"");
-    const Imported result = inputs.load({"a.toml"});
-    CHECK(result.scene.instances.size() == 3);
-    CHECK(result.scene.meshes.size() == 2);
-    CHECK(corners(result.scene, 1)[0] == Vec3(1, 0, 0));
-    const auto& worn = [&](std::size_t i) {
-        return result.scene.materials[result.scene.meshes[result.scene.instances[i].mesh].material]
-            .name;
-    };
-    CHECK(worn(0) != "red");
-    CHECK(worn(1) != "red");
-    CHECK(worn(2) == "red");
-}
-
-TEST_CASE("A sidecar's material lays over the model's of that name") {
-    Inputs inputs;
-    inputs.file("t.obj", std::string("mtllib t.mtl\n") + triangle);
-    inputs.file("t.mtl", "newmtl paint\nKd 0.25 0.5 0.75\n");
-    inputs.file("a.toml", "[material.paint]\nreflection = 0.5");
-    const Scene scene = inputs.load({"t.obj"}, {.sidecar = inputs.folder / "a.toml"}).scene;
-    const Material& paint = scene.materials.at(scene.meshes.at(0).material);
-    CHECK(paint.name == "paint");
-    CHECK(paint.reflection == Color(0.5F));
-    CHECK(paint.color == Color(0.25F, 0.5F, 0.75F));
-}
-
 TEST_CASE("A texture on a mesh without texture coordinates is a loss") {
     Inputs inputs;
-    inputs.file("t.obj", triangle);
+    inputs.file("t.obj", facet_obj);
     Image image(2, 2);
     save_image(inputs.folder / "wood.png", image);
     inputs.file("a.toml", "[material.paint]\ncolor = [0.5, 0.25, 1]\ntexture = \"wood.png\"\n"
@@ -231,6 +119,51 @@ TEST_CASE("A texture on a mesh without texture coordinates is a loss") {
     REQUIRE(lost != result.losses.end());
     CHECK(lost->what == "has no texture coordinates for the texture of material 'paint'; its "
                         "plain colour is used");
+}
+
+TEST_CASE("A translucent material is shown without the maps that it has, and those are named") {
+    Inputs inputs;
+    inputs.file("a.toml", "[material.leaf]\nopacity = 0.5");
+    const auto lost = [&](const char* name, const test::json& maps) {
+        test::json material = {{"name", "leaf"}};
+        material.update(maps);
+        test::Gltf gltf = test::with_material(material);
+        const test::json image = test::pixels(3, {255, 51, 0, 0, 204, 255});
+        gltf.add("textures", {{"source", gltf.add("images", image)}});
+        inputs.file(name, gltf.text());
+        const Imported result = inputs.load({name, "a.toml"});
+        CHECK(defects(result.scene).empty());
+        std::vector<std::string> said;
+        for (const Loss& loss : result.losses)
+            if (loss.place == "material 'leaf'") said.push_back(loss.what);
+        return said;
+    };
+    const test::json emission = {{"emissiveTexture", {{"index", 0}}},
+                                 {"emissiveFactor", {1, 1, 1}}};
+    test::json both = emission;
+    both["pbrMetallicRoughness"] = {{"metallicRoughnessTexture", {{"index", 0}}}};
+    using Lines = std::vector<std::string>;
+    CHECK(lost("a.gltf", emission) ==
+          Lines{"is shown without its emission map: it is translucent"});
+    CHECK(lost("b.gltf", both) ==
+          Lines{"is shown without its specular lobes and emission map: it is translucent"});
+    CHECK(lost("c.gltf", test::json::object()).empty());
+}
+
+TEST_CASE("Facets that lie on one another are a loss with their number") {
+    Inputs inputs;
+    const std::string corners = facet_obj;
+    inputs.file("same.obj", corners + "f 1 2 3\nf 1 2 3\n");
+    inputs.file("back.obj", corners + "f 3 2 1\n");
+    const auto lost = [&](const char* name, const LoadOptions& options) {
+        const Losses losses = inputs.load({name}, options).losses;
+        const auto found = std::ranges::find(losses, "facets", &Loss::place);
+        REQUIRE(found != losses.end());
+        CHECK(found->what.starts_with("2 that lie "));
+        return found->count;
+    };
+    CHECK(lost("same.obj", {}) == 2);
+    CHECK(lost("back.obj", {.sides = Sides::front}) == 2);
 }
 
 TEST_CASE("A model's first camera is the active one until another is picked by name") {
@@ -309,9 +242,9 @@ TEST_CASE("Lights and cameras of a model move with it") {
 
 TEST_CASE("Models of several inputs share one scene") {
     Inputs inputs;
-    inputs.file("t.obj", std::string("mtllib t.mtl\n") + triangle);
+    inputs.file("t.obj", std::string("mtllib t.mtl\n") + facet_obj);
     inputs.file("t.mtl", "newmtl paint\nKd 1 0 0\n");
-    inputs.file("u.obj", std::string("mtllib u.mtl\n") + triangle);
+    inputs.file("u.obj", std::string("mtllib u.mtl\n") + facet_obj);
     inputs.file("u.mtl", "newmtl paint\nKd 0 0 1\n");
     inputs.file("stage.gltf", stage);
     const Imported result = inputs.load({"t.obj", "stage.gltf", "u.obj"});
@@ -328,7 +261,7 @@ TEST_CASE("Models of several inputs share one scene") {
 
 TEST_CASE("The light of a glTF file asks for an exposure unless somebody gives one") {
     Studio inputs;
-    inputs.file("stage.gltf", stage).file("facet.obj", triangle);
+    inputs.file("stage.gltf", stage).file("facet.obj", facet_obj);
     const auto asks = [&](const std::vector<std::string>& names,
                           const std::vector<std::string>& settings = {}) {
         return inputs.set(names, settings).auto_exposure;

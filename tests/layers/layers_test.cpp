@@ -40,9 +40,12 @@ std::map<std::string, Names> read_rooms() {
     return rooms;
 }
 
-std::vector<fs::path> sources() {
+using Folders = std::vector<std::string>;
+const Folders rooms_of_sources = {"src", "importers", "exporters", "validation"};
+
+std::vector<fs::path> sources(const Folders& folders = rooms_of_sources) {
     std::vector<fs::path> files;
-    for (const char* top : {"src", "importers", "exporters", "validation"})
+    for (const std::string& top : folders)
         for (const auto& entry : fs::recursive_directory_iterator(source / top))
             if (entry.path().extension() == ".h" || entry.path().extension() == ".cpp")
                 files.push_back(fs::relative(entry.path(), source));
@@ -50,20 +53,29 @@ std::vector<fs::path> sources() {
     return files;
 }
 
-// The files of ours that `file` includes, relative to the repository. Includes are spelled from
-// src/ or from the repository.
-std::vector<fs::path> includes(const fs::path& file) {
-    static const std::regex pattern("(^|\n)#include \"([^\"]+)\"");
-    std::vector<fs::path> found;
-    const std::string text = test::read(source / file);
+struct Includes {
+    std::vector<fs::path> ours = {};  // relative to the repository
+    Names unknown = {};               // quoted, but no file of ours
+};
+
+// Ours are spelled from src/ or from the repository, in quotes or, as the compiler allows, not.
+Includes includes_in(const std::string& text) {
+    static const std::regex pattern("(^|\\n)[ \t]*#[ \t]*include[ \t]*([<\"])([^>\"]+)[>\"]");
+    Includes found;
     for (std::sregex_iterator i(text.begin(), text.end(), pattern), end; i != end; ++i) {
-        const std::string name = (*i)[2];
+        const std::string name = (*i)[3];
         if (fs::exists(source / "src" / name))
-            found.push_back(fs::path("src") / name);
+            found.ours.push_back((fs::path("src") / name).lexically_normal());
         else if (fs::exists(source / name))
-            found.emplace_back(name);
+            found.ours.push_back(fs::path(name).lexically_normal());
+        else if ((*i)[2] == "\"")
+            found.unknown.insert(name);
     }
     return found;
+}
+
+std::vector<fs::path> includes(const fs::path& file) {
+    return includes_in(test::read(source / file)).ours;
 }
 
 std::string room_of(const fs::path& file) { return file.parent_path().generic_string(); }
@@ -108,8 +120,10 @@ TEST_CASE("layers, no file includes a room above or beside its own") {
     std::size_t arrows = 0;
     for (const fs::path& file : sources()) {
         const auto room = rooms.find(room_of(file));
-        INFO(file.string() << " is in no room of tests/layers/rooms.txt");
-        REQUIRE(room != rooms.end());
+        {
+            INFO(file.string() << " is in no room of tests/layers/rooms.txt");
+            REQUIRE(room != rooms.end());
+        }
         for (const fs::path& header : includes(file)) {
             const std::string there = room_of(header);
             if (there == room->first) continue;
@@ -119,6 +133,21 @@ TEST_CASE("layers, no file includes a room above or beside its own") {
         }
     }
     CHECK(arrows > 300);
+}
+
+TEST_CASE("layers, an include of ours is seen however it is spelled") {
+    const Includes found = includes_in("#include \"base/hash.h\"\n  # include <base/file.h>\n"
+                                       "#include <vector>\n#include \"hash.h\"\n"
+                                       "#include \"importers/obj/parse.h\"\n");
+    CHECK(found.ours ==
+          std::vector<fs::path>{"src/base/hash.h", "src/base/file.h", "importers/obj/parse.h"});
+    CHECK(found.unknown == Names{"hash.h"});
+}
+
+TEST_CASE("layers, every include in quotes is spelled from src or from the repository") {
+    for (const fs::path& file : sources())
+        for (const std::string& name : includes_in(test::read(source / file)).unknown)
+            FAIL_CHECK(file.string() << " includes \"" << name << "\", which is in neither");
 }
 
 TEST_CASE("layers, no circle of files includes itself") {
@@ -133,7 +162,9 @@ TEST_CASE("layers, no circle of files includes itself") {
 
 TEST_CASE("layers, rooms and files stay small enough to read") {
     std::map<std::string, int> files;
-    for (const fs::path& file : sources()) {
+    Folders folders = rooms_of_sources;
+    folders.insert(folders.end(), {"tests", "bench"});
+    for (const fs::path& file : sources(folders)) {
         ++files[room_of(file)];
         const std::string text = test::read(source / file);
         INFO(file.string());

@@ -103,6 +103,34 @@ TEST_CASE("render_rows, gives the same rows from any band on") {
     }
 }
 
+TEST_CASE("render_rows, takes whole bands of the picture alone") {
+    const NormalisedScene scene = mirror_scene();
+    const Tracer tracer(scene);
+    RenderOptions options = small;
+    options.height = 40;
+    const auto rows_of = [&](int first, int last) {
+        int count = 0;
+        tracer.render_rows(options, {first, last},
+                           [&](int, const Image& rows) { count += rows.height; });
+        return count;
+    };
+    CHECK(rows_of(0, 40) == 40);
+    CHECK(rows_of(0, 32) == 32);
+    CHECK(rows_of(32, 40) == 8);
+    for (const int row : {0, 32, 40}) CHECK(rows_of(row, row) == 0);
+    for (const auto& [first, last] : {std::pair(5, 7), std::pair(-32, 0), std::pair(0, 640),
+                                      std::pair(32, 0), std::pair(0, 39), std::pair(1, 32)})
+        try {
+            rows_of(first, last);
+            FAIL_CHECK(first << " to " << last << " are taken");
+        } catch (const Error& error) {
+            CHECK(error.failure == Failure::usage);
+            CHECK(error.what() ==
+                  "the rows from " + std::to_string(first) + " to " + std::to_string(last) +
+                      " are no range of a picture of 40 rows, or begin or end within a band of 32");
+        }
+}
+
 TEST_CASE("render_rows, ends with what its receiver throws") {
     const NormalisedScene scene = mirror_scene();
     const auto full = [](int, const Image&) { throw Error(Failure::output, "disk", "is full"); };

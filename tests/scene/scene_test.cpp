@@ -198,6 +198,23 @@ TEST_CASE("defects, are named one by one") {
     CHECK(defects(one_sphere(1)).empty());
 }
 
+TEST_CASE("defects, call the parts of a material as the documents do") {
+    Scene scene = one_sphere(1);
+    Material& m = scene.materials[0];
+    m.name = "leaf";
+    m.opacity = 0.5F;
+    m.alpha_map = AlphaMap{.map = {.texture = 7}};
+    m.specular_lobes = SpecularLobes{.color = {.texture = 8}, .level = {.texture = 9}, .lobes = {}};
+    CHECK(defects(scene) ==
+          std::vector<std::string>{
+              "material 'leaf' refers to a missing texture for its alpha map",
+              "material 'leaf' refers to a missing texture for its specular lobes' colour",
+              "material 'leaf' refers to a missing texture for its specular lobes' level",
+              "material 'leaf' has 0 specular lobes, not 1 to 16",
+              "material 'leaf' is translucent and has an emission map or specular lobes, which "
+              "need it opaque"});
+}
+
 TEST_CASE("objects, are instances, then spheres, then planes") {
     Scene scene = one_sphere(1);
     scene.materials.resize(4);
@@ -293,6 +310,9 @@ TEST_CASE("render options, without a picture are an error of usage") {
     CHECK(message({.width = 800, .height = -1}) ==
           "a picture must have at least 1 x 1 pixels, not 800 x -1");
     CHECK(message({.samples = 0}) == "a picture must have at least 1 sample a pixel, not 0");
+    CHECK(message({.samples = 256}).empty());
+    CHECK(message({.samples = 2'000'000'000}) ==
+          "a picture must have at most 256 x 256 samples a pixel, not 2000000000 x 2000000000");
     CHECK(message({.max_depth = 0}) == "a path must have at least 1 ray segment, not 0");
     try {
         check({.width = 0});

@@ -47,6 +47,15 @@ struct Inputs {
     }
 };
 
+/// One facet in the x-z plane with its right angle at the origin.
+inline const char* const facet_obj = R"(
+v 0 0 0
+v 1 0 0
+v 0 0 1
+usemtl paint
+f 1 2 3
+)";
+
 inline const char* const studio = R"(
 [lighting]
 ambient = 0.5

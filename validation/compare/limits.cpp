@@ -49,6 +49,13 @@ bool worse(const Metric& one, const Metric& other) {
 
 }  // namespace
 
+std::map<std::string, double> default_limits() {
+    std::map<std::string, double> limits;
+    for (const MetricKind& kind : metric_kinds())
+        if (kind.by_default) limits.emplace(kind.name, kind.limits.equivalent.value());
+    return limits;
+}
+
 Limits profile_limits(const std::string& name) {
     const auto profile = std::ranges::find(profiles, name, &Profile::name);
     if (profile == profiles.end())

@@ -34,6 +34,7 @@ struct MetricKind {
     Part part = Part::whole;
     std::string_view description = {};  ///< plain text; empty: as of the same figure of the whole
     ProfileLimits limits = {};
+    bool by_default = false;            ///< its equivalent limit holds where no profile is named
     std::optional<double> always = {};  ///< its limit where none is given
 };
 

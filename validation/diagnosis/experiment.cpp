@@ -163,14 +163,14 @@ Found Experiment::seek(const Unknown& unknown) {
         const cv::Mat now = prepared(encoded_mat(trial.linear));
         const cv::Mat slope = now - before, error = target - now;
         if (trial.left < best.left) best = {.value = value, .left = trial.left};
-        const double steepness = dot(slope, slope);
-        if (!(steepness > 0)) break;
+        const double slope_squared = dot(slope, slope);
+        if (!(slope_squared > 0)) break;
         if (i == 0) {
             const double along = dot(target - before, slope);
-            if (along * along < least_likeness * scale * steepness) break;
+            if (along * along < least_likeness * scale * slope_squared) break;
         }
         if (best.left < settled_at / 10) break;
-        const double next = clamped(value + (value - last) * dot(error, slope) / steepness);
+        const double next = clamped(value + (value - last) * dot(error, slope) / slope_squared);
         if (std::abs(next - value) < 1e-4 * std::abs(unknown.step)) break;
         before = now;
         last = value;

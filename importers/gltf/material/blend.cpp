@@ -94,8 +94,8 @@ bool MaterialReader::read_blend() {
                                        false, [&] { return grey_of(clear); });
     MaterialReader glass = part(Look::clear), rest = part(Look::scattering);
     if (metal.varies) glass.clear_part = &mask;
-    std::set<std::string> told;
-    glass.said = rest.said = &told;
+    std::set<std::string> said_of_both;
+    glass.said = rest.said = &said_of_both;
     rest.all_metal = metal.varies && through.mean >= 1;
     glass.read();
     rest.read();

@@ -56,7 +56,7 @@ std::vector<Vec2f> read_texcoord_set(const Part& part, const std::string& name,
 /// it the positions are counted. Throws Error (input).
 Vec3 read_attributes(const Part& part, const Elements& range, Mesh& mesh);
 
-/// The material, with a coverage for the alpha of vertices.
+/// The material, with an alpha map for the alpha of vertices.
 Index fading(Reader& reader, Index material);
 
 // ---- nodes/texcoord_sets.cpp ------------------------------------------------------------------

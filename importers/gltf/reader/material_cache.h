@@ -46,7 +46,7 @@ struct MaterialCache {
     std::map<int, Index> materials = {};   ///< by glTF index; -1: the default one
     std::map<int, Index> untextured = {};  ///< the same without images
     std::map<int, Index> one_set = {};     ///< the same with the images of the first TEXCOORD_n
-    std::map<Index, Index> fading = {};    ///< by material: the same with a coverage
+    std::map<Index, Index> fading = {};    ///< by material: the same with an alpha map
     std::map<int, std::vector<OtherSet>> other_sets = {};  ///< by glTF index
     std::vector<Relaid> relaid = {};
     std::map<int, int> texcoords = {};  ///< n of TEXCOORD_n by glTF index; absent: no images

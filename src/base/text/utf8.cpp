@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstring>
 
 namespace penumbra {
@@ -49,6 +50,7 @@ bool is_ascii(std::string_view text) {
 }
 
 void append_utf8(std::string& text, std::uint32_t code) {
+    assert(code <= 0x10ffff);
     const auto tail = [&](int shift) { text += char(0x80 | ((code >> shift) & 0x3f)); };
     if (code < 0x80) {
         text += char(code);

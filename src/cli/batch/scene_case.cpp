@@ -13,6 +13,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 namespace penumbra::cli {
 namespace {
@@ -24,6 +26,7 @@ constexpr const char* stem = "scene";  // of the exported files
 // A scene that is ready for both renderers.
 struct Prepared {
     NormalisedScene scene = {};
+    std::unique_ptr<Metered> metered = {};
     RenderOptions options = {};
     Color background = {};  // as it is seen: exposure brightens it as well
     Losses losses = {};
@@ -32,7 +35,9 @@ struct Prepared {
 
 Prepared prepare(const Context& context, const SceneJob& job) {
     Imported imported = load(context, job.inputs, job.load);
-    Prepared result = {.options = imported.render,
+    std::unique_ptr<Metered> metered = meter(context, imported);
+    Prepared result = {.metered = std::move(metered),
+                       .options = imported.render,
                        .losses = std::move(imported.losses),
                        .files = std::move(imported.files)};
     result.options.threads = job.threads;
@@ -105,8 +110,10 @@ class SceneRun {
     }
 
     void render_ours() {
-        Rendered rendered = render_scene(context_, prepared_.scene, prepared_.options,
-                                         "render " + job_.name, job_.quiet);
+        Rendered rendered =
+            render_scene(context_, prepared_.scene, prepared_.options, prepared_.metered.get(),
+                         "render " + job_.name, job_.quiet);
+        prepared_.metered.reset();
         cases_[0].test = std::move(rendered.image);
         cases_[0].seconds["render"] = rendered.build_seconds + rendered.render_seconds;
         save_image(folder() / "ours.exr", cases_[0].test);

@@ -23,6 +23,7 @@ int export_scene(const Context& context) {
     check_writable(output);
 
     Imported imported = load(context, arguments.inputs);
+    meter(context, imported);
     Losses losses = imported.losses;
     report_losses(context, losses);
     const NormalisedScene scene = normalise(std::move(imported.scene), imported.render);

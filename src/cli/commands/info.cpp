@@ -181,7 +181,9 @@ int info(const Context& context) {
     // The facets are the model's own, not those that normal maps are baked into.
     Arguments unbaked = arguments;
     unbaked.load.normal_maps = NormalMaps::pixel;
-    report.imported = load({unbaked, context.console, context.stop}, arguments.inputs);
+    const Context own = {unbaked, context.console, context.stop};
+    report.imported = load(own, arguments.inputs);
+    meter(own, report.imported);
     Scene& scene = report.imported.scene;
     report.box = bounds(scene);
     report.facets = facet_count(scene);

@@ -1,4 +1,5 @@
 #include "base/file.h"
+#include "base/text/text.h"
 #include "cli/batch/case_cache.h"
 #include "cli/steps.h"
 
@@ -9,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <functional>
+#include <memory>
 
 namespace penumbra::cli {
 namespace {
@@ -17,8 +19,8 @@ void check_picture(const std::filesystem::path& file, int bits) {
     if (!can_save_image(file))
         throw Error(Failure::output, file.string(),
                     "unknown picture format (use .png, .exr, .tif, .jpg or .hdr)");
-    const std::string extension = file.extension().string();
-    if (bits == 16 && extension.find_first_of("pPtT") != 1)
+    const std::string extension = lower_extension(file);
+    if (bits == 16 && extension != ".png" && extension != ".tif" && extension != ".tiff")
         throw Error(Failure::usage, "--depth",
                     fmt::format("16 bits are for .png and .tif, not {}", extension));
     check_writable(file);
@@ -33,11 +35,13 @@ int render(const Context& context) {
 
     const Stopwatch import_time;
     Imported imported = load(context, arguments.inputs);
+    NormalisedScene scene;  // outlives the trees
+    const std::unique_ptr<Metered> metered = meter(context, imported);
     check_not_input(output, imported.files);
-    if (output.extension() != ".png") preload_image_module();  // while the picture is rendered
+    if (lower_extension(output) != ".png") preload_image_module();  // while the picture is rendered
     report_losses(context, imported.losses);
     const RenderOptions options = imported.render;
-    const NormalisedScene scene = normalise(std::move(imported.scene), options);
+    scene = normalise(std::move(imported.scene), options);
     const double import_seconds = import_time.seconds();
 
     // The bar and its rate count what is rendered now.
@@ -51,13 +55,15 @@ int render(const Context& context) {
     };
     std::function<void(double)> progress;
     if (bar) progress = [&](double share) { bar(share); };
-    const RenderedFile done = render_file(scene, options, output,
-                                          {.save = {arguments.bits},
-                                           .checkpoint_interval = arguments.checkpoint_interval,
-                                           .resume = arguments.resume,
-                                           .resumed = resumed,
-                                           .program = program_key},
-                                          {progress, context.stop});
+    const RenderFileOptions how = {.save = {arguments.bits},
+                                   .checkpoint_interval = arguments.checkpoint_interval,
+                                   .resume = arguments.resume,
+                                   .resumed = resumed,
+                                   .program = program_key};
+    const Watch watch = {progress, context.stop};
+    const RenderedFile done =
+        metered ? render_file(metered->tracer_for(scene), options, output, how, watch)
+                : render_file(scene, options, output, how, watch);
     context.console.clear_progress();
     if (!done.warning.empty()) context.console.warning(done.warning);
 

@@ -81,7 +81,8 @@ class CommandOptions : public OptionReader {
     }
 
     void limit(const std::string& name, const std::string& metric, const std::string& what) {
-        value(name, "X", what, [this, name, metric](const std::string& text) {
+        const std::string help = fmt::format("{} ({})", what, default_limits().at(metric));
+        value(name, "X", help, [this, name, metric](const std::string& text) {
             overrides_[metric] = read_number(name, text, {0, 1});
         });
     }
@@ -316,10 +317,10 @@ class CommandOptions : public OptionReader {
         group = "Limits";
         value("--profile", "NAME", "Set of limits: strict, equivalent or similar",
               [this](const std::string& text) { profile_ = text; });
-        limit("--min-parity", "parity", "Least share of equal pixels (0.995)");
-        limit("--min-ssim", "ssim", "Least structural similarity (0.99)");
-        limit("--max-flip", "flip", "Largest mean FLIP error (0.01)");
-        limit("--max-flip-tile", "flip_tile", "Largest FLIP error of a tile (0.045)");
+        limit("--min-parity", "parity", "Least share of equal pixels");
+        limit("--min-ssim", "ssim", "Least structural similarity");
+        limit("--max-flip", "flip", "Largest mean FLIP error");
+        limit("--max-flip-tile", "flip_tile", "Largest FLIP error of a tile");
         value("--limit", "METRIC=X", "Limit of any metric, such as bias=0.002",
               [this](const std::string& text) {
                   const auto [metric, number] = read_limit("--limit", text);

@@ -1,4 +1,5 @@
 // The image module: everything that penumbra asks of OpenImageIO, behind ImageModule.
+#include "base/descriptor.h"
 #include "image/image_module.h"
 #include "image/oiio/containers.h"
 #include "image/oiio/encoder.h"
@@ -162,9 +163,8 @@ struct TemporaryFile {
 
     explicit TemporaryFile(const std::string& extension) {
         path = (std::filesystem::temp_directory_path() / ("penumbra-XXXXXX" + extension)).string();
-        const int opened = ::mkstemps(path.data(), int(extension.size()));
-        if (opened < 0) throw std::system_error(errno, std::generic_category(), path);
-        ::close(opened);
+        const Descriptor opened(::mkstemps(path.data(), int(extension.size())));
+        if (!opened) throw std::system_error(errno, std::generic_category(), path);
     }
     TemporaryFile(const TemporaryFile&) = delete;
     TemporaryFile& operator=(const TemporaryFile&) = delete;

@@ -1,11 +1,9 @@
 #include "prepare/surfaces/facet_lifter.h"
 
-#include "base/hash.h"
+#include "prepare/body.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <span>
 #include <unordered_map>
 
 namespace penumbra {
@@ -22,11 +20,7 @@ struct Pull {
 };
 
 struct PositionHash {
-    std::size_t operator()(const Vec3f& p) const {
-        // Equal numbers have equal bits, 0 and -0 too.
-        const std::array<float, 3> numbers = {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F};
-        return hash_of(std::as_bytes(std::span(numbers)));
-    }
+    std::size_t operator()(const Vec3f& p) const { return hash_of_point(p); }
 };
 
 using Pulls = std::unordered_map<Vec3f, std::vector<Pull>, PositionHash>;

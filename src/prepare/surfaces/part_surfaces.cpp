@@ -7,6 +7,7 @@
 #include "prepare/surfaces/coplanar_patches.h"
 #include "prepare/surfaces/facet_lifter.h"
 #include "prepare/surfaces/world_facets.h"
+#include "scene/defects.h"
 
 #include "penumbra/prepare.h"
 #include "penumbra/scene.h"
@@ -14,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -164,6 +166,7 @@ void part_facets(Scene& scene, const Bounds& box, Losses& losses) {
 }  // namespace
 
 Losses part_surfaces(Scene& scene) {
+    assert(all_indices_in_range(scene));
     Losses losses;
     const Bounds box = bounds(scene);
     const double factor = normalising_factor(box);

@@ -2,12 +2,12 @@
 
 #include "base/memory.h"
 
+#include "penumbra/error.h"
 #include "penumbra/limits.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace penumbra::embree {
 namespace {
@@ -25,7 +25,9 @@ void* new_buffer(const Device& device, const Geometry& geometry, RTCBufferType t
         3 * (vertices ? sizeof(float) : sizeof(unsigned)), std::max<std::size_t>(count, 1));
     if (buffer != nullptr) return buffer;
     check(device);
-    throw std::runtime_error("Embree makes no room for a mesh");
+    throw Error(Failure::input, "",
+                fmt::format("Embree makes no room for a mesh with {} {}", count,
+                            vertices ? "vertices" : "facets"));
 }
 
 }  // namespace
@@ -52,7 +54,7 @@ void check(const Device& device) {
                               : fmt::format("the scene has more facets than the {} of memory that "
                                             "may be used suffice for",
                                             memory_text(memory_limit())));
-    default: throw std::runtime_error("Embree cannot be used");
+    default: throw Error(Failure::input, "", "Embree cannot prepare the scene for rendering");
     }
 }
 

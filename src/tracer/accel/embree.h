@@ -48,7 +48,8 @@ using Tree = Owned<RTCScene, rtcRetainScene, rtcReleaseScene>;
 /// A device that asks before it takes memory: see penumbra/limits.h.
 Device new_device();
 
-/// Throws what the device could not do: MemoryError (input) where it was refused memory.
+/// Throws what the device could not do: MemoryError (input) where it was refused memory, else Error
+/// (input).
 void check(const Device& device);
 
 /// Room for `count` vertices, or facets, of a geometry. Where there is none check() throws.

@@ -2,10 +2,13 @@
 
 #include "base/simd.h"
 
+#include <cassert>
+
 namespace penumbra {
 
 PENUMBRA_VECTORISED
 Extent extent_of(const double* values, const IndexRange& range) {
+    assert(range.first < range.last);
     // Several at a time: a single one would wait for the one before.
     constexpr std::size_t lanes = 8;
     std::array<double, lanes> low, high;

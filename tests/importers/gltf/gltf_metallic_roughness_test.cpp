@@ -19,7 +19,7 @@ using test::with_material;
 namespace {
 
 // Image 0 is the metallic-roughness texture, image 1 the base colour's if it is given.
-Gltf with_polish(const json& lobe, const json& base = nullptr, json material = {}) {
+Gltf with_lobes(const json& lobe, const json& base = nullptr, json material = {}) {
     auto& pbr = material["pbrMetallicRoughness"];
     pbr["metallicRoughnessTexture"] = {{"index", 0}};
     if (!base.is_null()) pbr["baseColorTexture"] = {{"index", 1}};
@@ -37,10 +37,10 @@ Losses lost(const std::string& what) {
 
 }  // namespace
 
-TEST_CASE("glTF polish, without metal leaves the base colour's image as it is") {
+TEST_CASE("glTF specular lobes, without metal leaves the base colour's image as it is") {
     // Roughness 0.2 and 0.6 in green, blue is 0.
     const Imported imported =
-        read(with_polish(pixels(3, {9, 51, 0, 9, 153, 0}), pixels(3, {1, 2, 3, 4, 5, 6})));
+        read(with_lobes(pixels(3, {9, 51, 0, 9, 153, 0}), pixels(3, {1, 2, 3, 4, 5, 6})));
     CHECK(imported.losses == lost("metallic-roughness texture: mixed from 5 Phong lobes"));
     const Scene& scene = imported.scene;
     const Material& m = scene.materials[0];
@@ -63,11 +63,11 @@ TEST_CASE("glTF polish, without metal leaves the base colour's image as it is") 
     }
 }
 
-TEST_CASE("glTF polish, with metal is what the law gives for each texel") {
+TEST_CASE("glTF specular lobes, with metal is what the law gives for each texel") {
     // Left: a green dielectric of roughness 0.5. Middle and right: gold of roughness 0.2.
     const std::vector<int> colors = {0, 188, 0, 255, 188, 0, 255, 188, 0};
     const Imported imported =
-        read(with_polish(pixels(3, {0, 128, 0, 0, 51, 255, 0, 51, 255}), pixels(3, colors)));
+        read(with_lobes(pixels(3, {0, 128, 0, 0, 51, 255, 0, 51, 255}), pixels(3, colors)));
     const Scene& scene = imported.scene;
     const Material& m = scene.materials[0];
     REQUIRE(m.specular_lobes);
@@ -103,14 +103,14 @@ TEST_CASE("glTF polish, with metal is what the law gives for each texel") {
     }
 }
 
-TEST_CASE("glTF polish, keeps the highlights of what most of the surface is") {
+TEST_CASE("glTF specular lobes, keeps the highlights of what most of the surface is") {
     // Three texels of plastic and one of metal, all of roughness 0.3.
     const auto shine = [](int plastic) {
         std::vector<int> lobe;
         for (int i = 0; i < 4; ++i)
             for (const int sample : {0, 77, i < plastic ? 0 : 255}) lobe.push_back(sample);
         const auto lobes =
-            read(with_polish(pixels(3, lobe))).scene.materials[0].specular_lobes->lobes;
+            read(with_lobes(pixels(3, lobe))).scene.materials[0].specular_lobes->lobes;
         REQUIRE(lobes.size() == 1);
         return double(lobes[0].specular);
     };
@@ -118,10 +118,10 @@ TEST_CASE("glTF polish, keeps the highlights of what most of the surface is") {
     CHECK(shine(1) == Approx(1));
 }
 
-TEST_CASE("glTF polish, that is the same everywhere needs no images") {
+TEST_CASE("glTF specular lobes, that is the same everywhere needs no images") {
     json material = {{"pbrMetallicRoughness", {{"roughnessFactor", 0.5}}}};
     const Imported imported =
-        read(with_polish(pixels(3, {0, 204, 255, 77, 204, 255}), nullptr, material));
+        read(with_lobes(pixels(3, {0, 204, 255, 77, 204, 255}), nullptr, material));
     CHECK(imported.losses.empty());
     const Material& m = imported.scene.materials[0];
     CHECK_FALSE(m.specular_lobes);
@@ -132,14 +132,14 @@ TEST_CASE("glTF polish, that is the same everywhere needs no images") {
     CHECK(m.shininess == Approx(expected.shininess));
     // A factor of 0 makes an image constant.
     material["pbrMetallicRoughness"] = {{"roughnessFactor", 0}, {"metallicFactor", 0}};
-    CHECK_FALSE(read(with_polish(pixels(3, {0, 9, 9, 0, 204, 255}), nullptr, material))
+    CHECK_FALSE(read(with_lobes(pixels(3, {0, 9, 9, 0, 204, 255}), nullptr, material))
                     .scene.materials[0]
                     .specular_lobes);
 }
 
-TEST_CASE("glTF polish, joins images of unequal size at the larger one") {
+TEST_CASE("glTF specular lobes, joins images of unequal size at the larger one") {
     const Imported imported =
-        read(with_polish(pixels(3, {0, 255, 0, 0, 255, 255}, 3), pixels(3, {255, 255, 255})));
+        read(with_lobes(pixels(3, {0, 255, 0, 0, 255, 255}, 3), pixels(3, {255, 255, 255})));
     const Material& m = imported.scene.materials[0];
     REQUIRE(m.specular_lobes);
     const Raster& raster = imported.scene.textures.at(m.specular_lobes->color.texture).raster;
@@ -148,7 +148,7 @@ TEST_CASE("glTF polish, joins images of unequal size at the larger one") {
     // The other way round the metalness, 0 to 1 with repetition, is interpolated: 1/4, 1/4, 3/4,
     // 3/4 from the left.
     const Imported wide =
-        read(with_polish(pixels(3, {0, 255, 0, 0, 255, 255}), pixels(3, std::vector<int>(12, 0))));
+        read(with_lobes(pixels(3, {0, 255, 0, 0, 255, 255}), pixels(3, std::vector<int>(12, 0))));
     const auto reflected =
         samples_of(wide.scene, wide.scene.materials[0].specular_lobes->color.texture);
     REQUIRE(reflected.size() == 12);
@@ -158,8 +158,8 @@ TEST_CASE("glTF polish, joins images of unequal size at the larger one") {
     CHECK(linear(reflected[9]) == Approx(0.01).epsilon(0.1));
 }
 
-TEST_CASE("glTF polish, is baked once for materials with the same images and factors") {
-    Gltf gltf = with_polish(pixels(3, {0, 204, 0, 0, 51, 255}), pixels(3, {255, 0, 0, 0, 0, 255}));
+TEST_CASE("glTF specular lobes, is baked once for materials with the same images and factors") {
+    Gltf gltf = with_lobes(pixels(3, {0, 204, 0, 0, 51, 255}), pixels(3, {255, 0, 0, 0, 0, 255}));
     for (int i = 0; i < 2; ++i) {
         json material = gltf.root["materials"][0];
         material["name"] = "copy";
@@ -176,11 +176,11 @@ TEST_CASE("glTF polish, is baked once for materials with the same images and fac
           scene.materials[2].specular_lobes->level.texture);
 }
 
-TEST_CASE("glTF polish, takes the mean where its images cannot be joined or shown") {
+TEST_CASE("glTF specular lobes, takes the mean where its images cannot be joined or shown") {
     const json lobe = pixels(3, {0, 102, 0, 0, 102, 255});
     const std::string mean =
         "metallicRoughnessTexture is replaced by its mean over what the facets show: ";
-    Gltf gltf = with_polish(lobe, pixels(3, {255, 255, 255}));
+    Gltf gltf = with_lobes(lobe, pixels(3, {255, 255, 255}));
     gltf.root["materials"][0]["pbrMetallicRoughness"]["metallicRoughnessTexture"]["extensions"] = {
         {"KHR_texture_transform", {{"scale", {2, 2}}}}};
     const Imported apart = read(gltf);
@@ -191,14 +191,14 @@ TEST_CASE("glTF polish, takes the mean where its images cannot be joined or show
     CHECK(apart.scene.materials[0].metallic == Approx(expected.metallic));
     CHECK(apart.scene.materials[0].diffuse == Approx(expected.diffuse));
 
-    const Imported clear = read(with_polish(
+    const Imported clear = read(with_lobes(
         lobe, nullptr,
         {{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.5}}}}}));
     CHECK(clear.losses == lost(mean + "the surface is transparent"));
     CHECK(clear.scene.materials[0].metallic == Approx(0.5));
 
     // Roughness alone has an image of its own and may be laid as it likes.
-    gltf = with_polish(pixels(3, {0, 102, 0, 0, 255, 0}), pixels(3, {255, 255, 255}));
+    gltf = with_lobes(pixels(3, {0, 102, 0, 0, 255, 0}), pixels(3, {255, 255, 255}));
     gltf.root["materials"][0]["pbrMetallicRoughness"]["metallicRoughnessTexture"]["extensions"] = {
         {"KHR_texture_transform", {{"scale", {2, 2}}}}};
     const Imported level = read(gltf);
@@ -212,7 +212,7 @@ TEST_CASE("glTF polish, takes the mean where its images cannot be joined or show
     CHECK(plain.metallic == 0);
 }
 
-TEST_CASE("glTF polish, reads specular and glossiness") {
+TEST_CASE("glTF specular lobes, reads specular and glossiness") {
     const json glossy = {{"specularFactor", {1, 1, 1}},
                          {"glossinessFactor", 0.5},
                          {"diffuseFactor", {0.5, 0.5, 0.5, 1}},
@@ -235,7 +235,7 @@ TEST_CASE("glTF polish, reads specular and glossiness") {
     CHECK(linear(scattered[0]) == Approx(0.25 + 0.5 * 0.236).margin(0.004));
 }
 
-TEST_CASE("glTF polish, reads coloured and textured reflectance") {
+TEST_CASE("glTF specular lobes, reads coloured and textured reflectance") {
     const auto with_specular = [](const json& specular) {
         Gltf gltf = with_material(
             {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}},
@@ -273,7 +273,7 @@ TEST_CASE("glTF polish, reads coloured and textured reflectance") {
     CHECK(red[1] == 0);
 }
 
-TEST_CASE("glTF polish, can have a clear coat") {
+TEST_CASE("glTF specular lobes, can have a clear coat") {
     const std::string what =
         "clearcoat is approximate: its mirror image is added, the stronger highlight stays, and it "
         "dims what is beneath as at normal incidence";
@@ -291,7 +291,7 @@ TEST_CASE("glTF polish, can have a clear coat") {
     CHECK(material_of({{"emissiveFactor", {0.5, 0.25, 0}}, {"extensions", coat}}).emission ==
           Color(0.5F * 0.98F, 0.25F * 0.98F, 0));
 
-    Gltf gltf = with_polish(pixels(3, {0, 204, 0, 0, 255, 0}), nullptr, {{"extensions", coat}});
+    Gltf gltf = with_lobes(pixels(3, {0, 204, 0, 0, 255, 0}), nullptr, {{"extensions", coat}});
     const Imported coated = read(gltf);
     for (const SpecularLobe& lobe : coated.scene.materials[0].specular_lobes->lobes)
         CHECK(lobe.reflection == Color(0.02F));
@@ -300,7 +300,7 @@ TEST_CASE("glTF polish, can have a clear coat") {
     CHECK(read(gltf).scene.materials[0].specular_lobes->lobes[0].reflection == Color(0));
 }
 
-TEST_CASE("glTF polish, makes the same gold of all its spellings") {
+TEST_CASE("glTF specular lobes, makes the same gold of all its spellings") {
     const json gold = {0.8, 0.6, 0.2};
     const auto dielectric = [&](double ior) {
         return material_of(
@@ -334,7 +334,7 @@ TEST_CASE("glTF polish, makes the same gold of all its spellings") {
     same(glossy, 1e-6);
 }
 
-TEST_CASE("glTF polish, tints an image of metalness and a coloured reflectance alike") {
+TEST_CASE("glTF specular lobes, tints an image of metalness and a coloured reflectance alike") {
     Gltf gltf = with_material(
         {{"pbrMetallicRoughness",
           {{"baseColorTexture", {{"index", 0}}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
@@ -354,13 +354,13 @@ TEST_CASE("glTF polish, tints an image of metalness and a coloured reflectance a
     CHECK(linear(scattered[3]) == Approx(0.2 + 0.8 * 0.75).margin(0.01));
 }
 
-TEST_CASE("glTF polish, keeps its images where several models form one scene") {
+TEST_CASE("glTF specular lobes, keeps its images where several models form one scene") {
     json material = {{"alphaMode", "BLEND"},
                      {"emissiveFactor", {1, 1, 1}},
                      {"emissiveTexture", {{"index", 1}}},
                      {"normalTexture", {{"index", 0}}}};
-    const Gltf gltf = with_polish(pixels(3, {0, 204, 0, 0, 51, 255}),
-                                  pixels(4, {255, 0, 0, 255, 0, 0, 255, 0}), material);
+    const Gltf gltf = with_lobes(pixels(3, {0, 204, 0, 0, 51, 255}),
+                                 pixels(4, {255, 0, 0, 255, 0, 0, 255, 0}), material);
     const test::TempDir folder;
     const auto one = test::write(folder / "one.gltf", gltf.text());
     const auto two = test::write(folder / "two.gltf", gltf.text());

@@ -225,7 +225,7 @@ TEST_CASE("Mtl, map_Ks tints highlight and mirror image") {
           Lines{"a.mtl:5: material 'a': map_Ks is ignored: the surface is transparent"});
 }
 
-TEST_CASE("Mtl, map_Pr and map_Pm vary the polish") {
+TEST_CASE("Mtl, map_Pr and map_Pm vary the specular lobes") {
     const Files own;
     save(own, "rough.png", 1, {51, 255});
     save(own, "metal.png", 1, {0, 255});
