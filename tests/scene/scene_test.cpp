@@ -293,6 +293,10 @@ TEST_CASE("render options, without a picture are an error of usage") {
     CHECK(message({.width = 800, .height = -1}) ==
           "a picture must have at least 1 x 1 pixels, not 800 x -1");
     CHECK(message({.samples = 0}) == "a picture must have at least 1 sample a pixel, not 0");
+    CHECK(message({.antialiasing = Antialiasing{.threshold = -1}}) ==
+          "the threshold of anti-aliasing must be at least 0, not -1");
+    CHECK(message({.antialiasing = Antialiasing{.depth = 10}}) ==
+          "the depth of anti-aliasing must be from 1 to 9, not 10");
     CHECK(message({.max_depth = 0}) == "a path must have at least 1 ray segment, not 0");
     try {
         check({.width = 0});
