@@ -21,6 +21,7 @@
 #include <array>
 #include <mutex>
 #include <span>
+#include <stop_token>
 
 namespace penumbra {
 
@@ -73,6 +74,7 @@ struct Job {
     const Shift shift;
     const std::vector<PixelSample> samples;
     const MediumStack inside;  // where the eye is
+    const std::stop_token& stop;
 };
 
 // The ray through a point of the picture, in pixels from its upper left corner.
@@ -213,6 +215,8 @@ void render_fixed(const Job& job, const PictureTile& tile, Workspace& work) {
 void trace_points(const Job& job, std::span<const Vec2> points, std::span<Color> colors,
                   Workspace& work) {
     for (std::size_t first = 0; first < points.size(); first += Workspace::capacity) {
+        // A tile may have any number of them.
+        if (job.stop.stop_requested()) throw Error(Failure::interrupted, "", "interrupted");
         const std::size_t count = std::min(points.size() - first, Workspace::capacity);
         work.pixels.assign(count, Vec3(0));
         work.media.clear();
@@ -269,7 +273,8 @@ void render_tiles(const Shot& shot, const RowRange& rows, const TakeRows& take,
                      shot.options,
                      shot.shift,
                      pixel_samples(shot.options.samples, shot.shift),
-                     media_at(shot.prepared, view.location, media)};
+                     media_at(shot.prepared, view.location, media),
+                     watch.stop};
     TileRows tiles(shot.options, rows, take);
     std::mutex reporting;
     const int threads = tbb::this_task_arena::max_concurrency();
