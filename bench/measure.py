@@ -70,13 +70,13 @@ class Case:
         for program, file in ((tools.povray, "scene.pov"), (tools.tachyon, "scene.dat")):
             if program:
                 subprocess.run([tools.penumbra, "export", self.scene, "--size", size,
-                                "-o", self.folder / file], **quietly)
+                                "--samples", "1", "-o", self.folder / file], **quietly)
 
     def command(self, tools, program, threads):
         size = f"{self.size[0]}x{self.size[1]}"
         return {
-            "penumbra": [tools.penumbra, "render", self.scene, "--size", size, "--threads", threads,
-                         *self.set_options(), "--json", "-o", self.folder / "penumbra.png"],
+            "penumbra": [tools.penumbra, "render", self.scene, "--size", size, "--samples", "1",
+                         "--threads", threads, *self.set_options(), "--json", "-o", self.folder / "penumbra.png"],
             "POV-Ray": [tools.povray, "scene.ini", f"+WT{threads}", "+FN8", "+Opovray.png", "-V"],
             "Tachyon": [tools.tachyon, "scene.dat", "-fullshade", "-shade_phong", "-numthreads",
                         threads, "-format", "PNG", "-o", "tachyon.png"],

@@ -118,6 +118,7 @@ std::vector<Replacement> load_models(const std::vector<Placement>& placements,
         }
         Scene placed = found->second.placed;
         name_instances(placed, placement.name);
+        for (Instance& instance : placed.instances) instance.backdrop = placement.backdrop;
         place_model(result.scene, std::move(placed), placement.transform());
     }
     return replacements;

@@ -59,7 +59,17 @@ std::string ini_text(const RenderOptions& render, const std::string& stem,
                                   "Width={1}\n"
                                   "Height={2}\n",
                                   stem, render.width, render.height, extension);
-    if (render.samples > 1)
+    if (render.antialiasing)
+        out += fmt::format("; {}\n"
+                           "Antialias=On\n"
+                           "Sampling_Method=2\n"
+                           "Antialias_Threshold={}\n"
+                           "Antialias_Depth={}\n"
+                           "Antialias_Gamma=2.5\n"
+                           "Jitter=Off\n",
+                           to_string(sampling_of(render)), render.antialiasing->threshold,
+                           render.antialiasing->depth);
+    else if (render.samples > 1)
         out += fmt::format("; every pixel on a fixed grid of {0} x {0} rays\n"
                            "Antialias=On\n"
                            "Sampling_Method=1\n"

@@ -304,7 +304,7 @@ struct Planner {
                   fmt::format("POV-Ray follows at most {} ray "
                               "segments",
                               most_trace_levels)});
-        if (render.samples > most_subpixels)
+        if (!render.antialiasing && render.samples > most_subpixels)
             lose({Loss::approximated, "samples",
                   fmt::format("POV-Ray's grid has at most {0} x {0} "
                               "samples",

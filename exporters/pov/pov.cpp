@@ -62,12 +62,17 @@ struct Writer {
         losses("Not carried over exactly:", approximate);
     }
 
+    std::string sampling() const {
+        if (render.antialiasing) return to_string(sampling_of(render));
+        if (render.samples == 1) return "one ray each";
+        return fmt::format("a grid of {0} x {0} rays each", render.samples);
+    }
+
     void header() {
         out += "#version 3.7;\n\n";
         origin();
         out += fmt::format("//\n// Picture:  {} x {} pixels, ", render.width, render.height);
-        out += render.samples > 1 ? fmt::format("a grid of {0} x {0} rays each, ", render.samples)
-                                  : std::string("one ray each, ");
+        out += sampling() + ", ";
         out += plural(std::size_t(render.max_depth), "segment") + " along a path";
         if (render.exposure != 0) out += fmt::format(", exposure {:+g} EV", render.exposure);
         out += '\n';

@@ -29,7 +29,8 @@ void write_camera(Output& out, const RenderOptions& options) {
     const View view = view_of(out.scene.cameras[out.scene.camera], options.width, options.height);
     const double scale = view.orthographic ? 1 : 1 / view.direction.length();
     const double width = view.right.length() * scale, height = view.up.length() * scale;
-    const int more_rays = options.samples > 1 ? options.samples * options.samples : 0;
+    const int side = options.antialiasing ? options.antialiasing->depth : options.samples;
+    const int more_rays = side > 1 ? side * side : 0;
     // Tachyon's samples lie on the upper right corners of the pixels.
     const double dx = width / options.width / 2, dy = height / options.height / 2;
     out.text.add(
@@ -187,7 +188,10 @@ void write_objects(Output& out) {
 void note_losses(Output& out, const RenderOptions& render) {
     const Scene& scene = out.scene;
     if (scene.sky) out.note_loss(Loss::dropped, "background", "", "the image is left out");
-    if (render.samples > 1)
+    if (render.antialiasing)
+        out.note_loss(Loss::approximated, "antialias", "",
+                      "every pixel has as many rays, at random in it");
+    else if (render.samples > 1)
         out.note_loss(Loss::approximated, "samples", "", "rays lie at random in the pixel");
     const auto splits = [](const Material& m) {
         return m.reflection != Color(0) || m.specular_lobes || m.opacity < 1;

@@ -58,6 +58,7 @@ void read_placement(Section& section, Placement& placement) {
     }
     read_matrix(section, placement);
     section.read("material", placement.material);
+    section.read("backdrop", placement.backdrop);
     section.finish();
 }
 
@@ -66,6 +67,7 @@ void read_sphere(Section& section, Sphere& sphere, const Scene& scene) {
     section.read("name", sphere.name);
     section.read("center", sphere.center);
     section.read("radius", sphere.radius, positive);
+    section.read("backdrop", sphere.backdrop);
     section.read("material", material);
     section.finish();
     if (material) sphere.material = material_named(scene, *material);
@@ -76,6 +78,7 @@ void read_plane(Section& section, Plane& plane, const Scene& scene) {
     section.read("name", plane.name);
     section.read("point", plane.point);
     section.read("normal", plane.normal);
+    section.read("backdrop", plane.backdrop);
     section.read("material", material);
     section.finish();
     if (!std::isnormal(plane.normal.length()))
@@ -92,6 +95,20 @@ void read_background(Section& section, Scene& scene, TextureFiles& files) {
         return;
     }
     scene.sky = Sky{.texture = load_texture(section, "background", text, scene, files)};
+}
+
+// samples, or antialias and antialias_depth.
+void read_sampling(Section& section, Imported& result) {
+    RenderOptions& render = result.render;
+    Antialiasing adaptive = render.antialiasing.value_or(Antialiasing());
+    const bool fixed = section.read("samples", render.samples, {.low = 1, .high = 9});
+    const bool threshold = section.read("antialias", adaptive.threshold, {.low = 0, .high = 1000});
+    const bool depth = section.read("antialias_depth", adaptive.depth, {.low = 1, .high = 9});
+    if (fixed && (threshold || depth))
+        section.reject(threshold ? "antialias" : "antialias_depth", "cannot stand beside samples");
+    if (fixed) render.antialiasing.reset();
+    if (threshold || depth) render.antialiasing = adaptive;
+    if (fixed || threshold || depth) result.sampled = true;
 }
 
 // exposure = "auto", or EV.
@@ -146,8 +163,8 @@ bool lay_globals(const Layer& layer, Imported& result, TextureFiles& files) {
         sized = section->read("size", size, {.low = 1, .high = 32767});
         render.width = size[0];
         render.height = size[1];
-        // POV-Ray clamps its sampling depth to 9 and its trace level to 256.
-        section->read("samples", render.samples, {.low = 1, .high = 9});
+        read_sampling(*section, result);
+        // POV-Ray clamps its trace level to 256, and its sampling depth to 9.
         section->read("max_depth", render.max_depth, {.low = 1, .high = 256});
         read_background(*section, result.scene, files);
         read_exposure(*section, result);

@@ -20,6 +20,7 @@ struct Placement {
     Vec3 scale = {1, 1, 1};
     std::optional<Matrix> matrix = {};       ///< instead of the three above
     std::optional<Reference> material = {};  ///< replaces all of the model's
+    bool backdrop = false;                   ///< Instance::backdrop of all its instances
     std::optional<Reference> named_by = {};  ///< where a sidecar names the file
 
     Matrix transform() const;

@@ -47,6 +47,9 @@ Imported load(const Context& context, const std::vector<fs::path>& inputs,
     try {
         Imported imported = load_scene(inputs, options);
         imported.render.threads = arguments.threads;
+        // An average hides differences, and POV-Ray is slow.
+        if (!imported.sampled && arguments.command != Command::validate)
+            imported.render.antialiasing = Antialiasing();
         return imported;
     } catch (const Error& error) {
         throw Error(error.failure, "", in_users_words(arguments, options, error), error.remedy);
@@ -113,16 +116,19 @@ std::string source_of(const Arguments& arguments, const std::vector<fs::path>& i
     return source;
 }
 
-double sample_count(const RenderOptions& options) {
+Work work_of(const RenderOptions& options) {
+    const double pixels = double(options.width) * options.height;
+    if (options.antialiasing) return {pixels, " pixels"};
     const double grid = options.samples > 1 ? double(options.samples) * options.samples + 1 : 1;
-    return double(options.width) * options.height * grid;
+    return {pixels * grid, " samples"};
 }
 
 Rendered render_scene(const Context& context, const NormalisedScene& scene,
                       const RenderOptions& options, Metered* metered, const std::string& name,
                       bool quiet) {
     std::function<void(double)> show;
-    if (!quiet) show = context.console.progress(name, sample_count(options), " samples");
+    const Work work = work_of(options);
+    if (!quiet) show = context.console.progress(name, work.count, work.unit);
     Rendered result;
     Stopwatch time;
     const auto progress = [&](double done) {
@@ -132,11 +138,13 @@ Rendered render_scene(const Context& context, const NormalisedScene& scene,
         }
         if (show) show(done);
     };
-    const Watch watch = {progress, context.stop};
-    result.image = metered ? metered->tracer_for(scene).render(options, {}, watch)
-                           : render(scene, options, watch);
+    std::optional<Tracer> own;
+    if (!metered) own.emplace(scene, options.threads);
+    const Tracer& tracer = metered ? metered->tracer_for(scene) : *own;
+    result.image = tracer.render(options, {}, {progress, context.stop});
     result.render_seconds = time.seconds();
     context.console.clear_progress();
+    result.subject = tracer.subject_seen(options);
     return result;
 }
 

@@ -75,6 +75,7 @@ std::string source_of(const Arguments& arguments, const std::vector<std::filesys
 struct Rendered {
     Image image = {};
     double build_seconds = 0, render_seconds = 0;
+    std::vector<bool> subject = {};  ///< Tracer::subject_seen()
 };
 
 /// Renders under a progress bar. `metered`, if not null, is of the same scene with other light.
@@ -82,8 +83,13 @@ Rendered render_scene(const Context& context, const NormalisedScene& scene,
                       const RenderOptions& options, Metered* metered, const std::string& name,
                       bool quiet);
 
-/// Samples in a whole picture, for the rate of the progress bar.
-double sample_count(const RenderOptions& options);
+/// What the rate of the progress bar is of: samples or, where nobody knows how many they will be,
+/// pixels; in a whole picture.
+struct Work {
+    double count = 0;
+    const char* unit = "";
+};
+Work work_of(const RenderOptions& options);
 
 /// [{"place", "what", "kind", "count"}], equal ones together.
 nlohmann::ordered_json losses_json(const Losses& losses);

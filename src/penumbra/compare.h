@@ -86,7 +86,10 @@ struct PixelBox {
 struct CompareOptions {
     Limits limits = {};
     std::optional<Color> background =
-        {};           ///< for coverage; the most frequent border colour if absent
+        {};  ///< for coverage; the most frequent border colour if absent
+    /// For coverage, whether each pixel shows an object, row by row from the top: what
+    /// Tracer::subject_seen() says of a rendered scene. Empty: pixels that are not `background`.
+    std::vector<bool> covered = {};
     Image mask = {};  ///< black pixels are ignored; empty: none. Same size as the pictures
     std::vector<PixelBox> ignored = {};  ///< pixels that are ignored
     /// Pixels that have each other's colour so near by, in both directions, count as equal.
@@ -96,8 +99,8 @@ struct CompareOptions {
 
 /// Computes every figure of the parity rule. Unequal sizes, NaN and nearly empty pictures give
 /// Verdict::not_comparable. Throws Error (usage) for a limit of a metric that there is not, and for
-/// a mask of another size than the pictures; input, where the comparison needs more memory than
-/// memory_limit() leaves.
+/// a mask or a `covered` of another size than the pictures; input, where the comparison needs more
+/// memory than memory_limit() leaves.
 ///
 /// Where a picture has alpha, its colours are multiplied by it and alpha is one more channel of
 /// parity, exactness, max_error, rmse, outliers and coverage. FLIP and SSIM look at both pictures

@@ -39,6 +39,7 @@ struct Imported {
     /// render.exposure is still to be set to metered_exposure(): asked for, or the light comes from
     /// a glTF file, in physical units, and nobody says how to expose it.
     bool auto_exposure = false;
+    bool sampled = false;  ///< a sidecar or a setting says where rays go through a pixel
     std::vector<ModelInfo> models = {};
     /// The files that it comes from: those that were read, and those that models name besides,
     /// wherever they are there. None of them may be overwritten: see ExportOptions::inputs.

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "penumbra/compare.h"
+#include "penumbra/render_options.h"
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,7 @@ struct Case {
     Comparison comparison = {};
     std::string test_name = "penumbra", reference_name = "POV-Ray";
     Image test = {}, reference = {};
+    std::optional<Sampling> sampling = {};  ///< of a rendered scene
     Losses losses = {};
     std::map<std::string, double> seconds = {};     ///< import, render, export, povray, compare
     std::vector<std::string> commands = {};         ///< that repeat it

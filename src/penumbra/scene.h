@@ -216,6 +216,8 @@ struct Instance {
     std::string name = {};
     Index mesh = 0;         ///< into Scene::meshes
     Matrix transform = {};  ///< mesh to world; affine, invertible, any handedness
+    /// Surroundings, not what the picture is of: see Tracer::subject_seen().
+    bool backdrop = false;
 };
 
 struct Sphere {
@@ -223,6 +225,7 @@ struct Sphere {
     Vec3 center = Vec3(0);
     double radius = 1;
     Index material = no_index;
+    bool backdrop = false;  ///< see Instance
 };
 
 /// Infinite, two-sided.
@@ -231,6 +234,7 @@ struct Plane {
     Vec3 point = Vec3(0);
     Vec3 normal = {0, 1, 0};  ///< need not be unit
     Index material = no_index;
+    bool backdrop = false;  ///< see Instance
 };
 
 /// f_a = 2 / (1 + (d / distance)^power), d the distance to the source: POV-Ray's

@@ -91,6 +91,9 @@ class Tracer {
     std::vector<Index> objects_seen(const RenderOptions& options,
                                     const Overrides& overrides = {}) const;
 
+    /// Whether that ray hits an object that is no backdrop: what CompareOptions::covered counts.
+    std::vector<bool> subject_seen(const RenderOptions& options) const;
+
     const NormalisedScene& scene() const;
 
   private:

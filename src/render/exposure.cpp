@@ -56,6 +56,7 @@ double metered_exposure(const Tracer& tracer, const RenderOptions& options, cons
         std::clamp(int(std::lround(double(metering_width) * options.height / options.width)), 1,
                    4 * metering_width);
     small.samples = 1;
+    small.antialiasing.reset();
     // Penumbrae do not change the exposure, and cost the most.
     const Image image = tracer.render(small, {.penumbrae = false}, {.stop = watch.stop});
     const std::vector<Color> pixels = subject_pixels(image, tracer.scene().scene);

@@ -30,14 +30,18 @@ void append(std::string& list, const std::string& item) {
 std::vector<PictureTrait> picture_traits(const NormalisedScene& scene,
                                          const RenderOptions& options) {
     // By name, so that a new member is an error here until it is counted.
-    const auto& [width, height, samples, max_depth, exposure, threads] = options;
+    const auto& [width, height, samples, antialiasing, max_depth, exposure, threads] = options;
     static_cast<void>(threads);
     std::vector<PictureTrait> traits = {
         {"size", fmt::format("{}x{}", width, height), true},
-        {"samples", std::to_string(samples), true},
+        {"samples", antialiasing ? "adaptive" : std::to_string(samples), true},
         {"max_depth", std::to_string(max_depth), true},
         {"exposure", fmt::format("{}", exposure), true},
     };
+    if (antialiasing) {
+        traits.push_back({"antialias", fmt::format("{}", antialiasing->threshold), true});
+        traits.push_back({"antialias_depth", std::to_string(antialiasing->depth), true});
+    }
     for (const auto& [name, value] : fingerprints(scene))
         traits.push_back({name, fmt::format("{:016x}", value)});
     return traits;

@@ -127,15 +127,18 @@ class Hasher {
         add_all(name, positions, normals, texcoords, colors, alphas, tangents, triangles, material);
     }
     void add(const Instance& instance) {
-        const auto& [name, mesh, transform] = instance;
+        const auto& [name, mesh, transform, backdrop] = instance;
+        static_cast<void>(backdrop);  // the picture is the same
         add_all(name, mesh, transform);
     }
     void add(const Sphere& sphere) {
-        const auto& [name, center, radius, material] = sphere;
+        const auto& [name, center, radius, material, backdrop] = sphere;
+        static_cast<void>(backdrop);
         add_all(name, center, radius, material);
     }
     void add(const Plane& plane) {
-        const auto& [name, point, normal, material] = plane;
+        const auto& [name, point, normal, material, backdrop] = plane;
+        static_cast<void>(backdrop);
         add_all(name, point, normal, material);
     }
     void add(const Attenuation& attenuation) {
@@ -160,10 +163,14 @@ class Hasher {
         const auto& [texture, gain] = sky;
         add_all(texture, gain);
     }
+    void add(const Antialiasing& antialiasing) {
+        const auto& [threshold, depth] = antialiasing;
+        add_all(threshold, depth);
+    }
     void add(const RenderOptions& options) {
-        const auto& [width, height, samples, max_depth, exposure, threads] = options;
+        const auto& [width, height, samples, antialiasing, max_depth, exposure, threads] = options;
         static_cast<void>(threads);
-        add_all(width, height, samples, max_depth, exposure);
+        add_all(width, height, samples, antialiasing, max_depth, exposure);
     }
 
     template <class... T>

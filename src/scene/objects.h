@@ -40,6 +40,17 @@ inline Index material_index(const Scene& scene, Index object) {
     return scene.meshes[scene.instances[i].mesh].material;
 }
 
+/// Whether the object is of the surroundings: see Instance::backdrop.
+inline bool is_backdrop(const Scene& scene, Index object) {
+    const auto [kind, i] = place_of(scene, object);
+    switch (kind) {
+    case ObjectKind::sphere: return scene.spheres[i].backdrop;
+    case ObjectKind::plane: return scene.planes[i].backdrop;
+    case ObjectKind::instance: break;
+    }
+    return scene.instances[i].backdrop;
+}
+
 /// The object's name; an instance without one has its mesh's. May be empty.
 inline const std::string& name_of(const Scene& scene, Index object) {
     const auto [kind, i] = place_of(scene, object);

@@ -6,6 +6,7 @@
 #include "tracer/back_light.h"
 #include "tracer/direct_light.h"
 #include "tracer/mirrors.h"
+#include "tracer/pixel_sampler.h"
 #include "tracer/prepared/shapes.h"
 #include "tracer/ray_order.h"
 #include "tracer/scatter.h"
@@ -20,6 +21,8 @@
 #include <algorithm>
 #include <array>
 #include <mutex>
+#include <span>
+#include <stop_token>
 
 namespace penumbra {
 
@@ -53,13 +56,15 @@ struct Workspace {
     Vec3Array radiance;
     LightWork light;
     Media media;               // of the tile's paths
-    std::vector<Vec3> pixels;  // of the tile
+    std::vector<Vec3> pixels;  // of the tile, or of points that are traced together
+    AdaptiveSampler sampler;
 
     Workspace()
         : current(capacity), next(capacity), hits(capacity), surfaces(capacity), radiance(capacity),
           light(capacity), pixels(capacity) {}
 
-    static constexpr std::size_t capacity = std::size_t(tile_side) * tile_side;
+    // As many as a tile's pixels have corners.
+    static constexpr std::size_t capacity = std::size_t(tile_side + 1) * (tile_side + 1);
 };
 
 // One picture of a scene.
@@ -67,8 +72,10 @@ struct Job {
     const PreparedScene& prepared;
     const View view;
     const RenderOptions& options;
+    const Shift shift;
     const std::vector<PixelSample> samples;
     const MediumStack inside;  // where the eye is
+    const std::stop_token& stop;
 };
 
 // The ray through a point of the picture, in pixels from its upper left corner.
@@ -200,18 +207,51 @@ void trace_generations(const Job& job, Workspace& work) {
     }
 }
 
-// `rows` begin with the first of the tile.
-void render_tile(const Job& job, const PictureTile& tile, Workspace& work, Image& rows) {
+void render_fixed(const Job& job, const PictureTile& tile, Workspace& work) {
     work.pixels.assign(Workspace::capacity, Vec3(0));
     for (const PixelSample& sample : job.samples) {
         work.media.clear();
         primary_rays(job, tile, sample, work.current);
         trace_generations(job, work);
     }
+}
+
+// The light that comes from points of the picture.
+void trace_points(const Job& job, std::span<const Vec2> points, std::span<Color> colors,
+                  Workspace& work) {
+    for (std::size_t first = 0; first < points.size(); first += Workspace::capacity) {
+        // A tile may have any number of them.
+        if (job.stop.stop_requested()) throw Error(Failure::interrupted, "", "interrupted");
+        const std::size_t count = std::min(points.size() - first, Workspace::capacity);
+        work.pixels.assign(count, Vec3(0));
+        work.media.clear();
+        work.current.clear();
+        for (std::size_t i = 0; i < count; ++i) {
+            const Vec2 at = points[first + i] + Vec2(job.shift.x, job.shift.y);
+            const CameraRay ray = ray_through(job.view, job.options, at.x, at.y);
+            work.current.push(ray.origin, ray.direction,
+                              {.pixel = std::uint32_t(i), .inside = job.inside});
+        }
+        trace_generations(job, work);
+        for (std::size_t i = 0; i < count; ++i) colors[first + i] = Color(work.pixels[i]);
+    }
+}
+
+// `rows` begin with the first of the tile.
+void render_tile(const Job& job, const PictureTile& tile, Workspace& work, Image& rows) {
+    if (job.options.antialiasing)
+        work.sampler.sample(tile, *job.options.antialiasing,
+                            [&](std::span<const Vec2> points, std::span<Color> colors) {
+                                trace_points(job, points, colors, work);
+                            });
+    else
+        render_fixed(job, tile, work);
+    const std::vector<Vec3>& pixels =
+        job.options.antialiasing ? work.sampler.pixels() : work.pixels;
     for (int y = 0; y < tile.height; ++y)
         for (int x = 0; x < tile.width; ++x)
             rows.at(tile.x + x, y) =
-                Color(work.pixels[std::size_t(y) * std::size_t(tile.width) + std::size_t(x)]);
+                Color(pixels[std::size_t(y) * std::size_t(tile.width) + std::size_t(x)]);
 }
 
 // What one thread does until no tiles are left.
@@ -233,9 +273,13 @@ void render_tiles(const Shot& shot, const RowRange& rows, const TakeRows& take,
                   const Watch& watch) {
     const View view = view_of(shot.camera, shot.options.width, shot.options.height);
     Media media;  // around the eye
-    const Job job = {shot.prepared, view, shot.options,
+    const Job job = {shot.prepared,
+                     view,
+                     shot.options,
+                     shot.shift,
                      pixel_samples(shot.options.samples, shot.shift),
-                     media_at(shot.prepared, view.location, media)};
+                     media_at(shot.prepared, view.location, media),
+                     watch.stop};
     TileRows tiles(shot.options, rows, take);
     std::mutex reporting;
     const int threads = tbb::this_task_arena::max_concurrency();

@@ -2,6 +2,7 @@
 
 #include "scene/check_options.h"
 #include "scene/defects.h"
+#include "scene/objects.h"
 #include "tracer/accel/embree.h"
 #include "tracer/prepared/prepared_scene.h"
 #include "tracer/tiles.h"
@@ -131,6 +132,14 @@ std::vector<Index> Tracer::objects_seen(const RenderOptions& options,
     take_picture(*prepared_->scene, options, overrides,
                  [&](const Shot& shot) { objects = objects_in_picture(shot); });
     return objects;
+}
+
+std::vector<bool> Tracer::subject_seen(const RenderOptions& options) const {
+    const Scene& shown = prepared_->scene->scene;
+    std::vector<bool> seen;
+    for (const Index object : objects_seen(options))
+        seen.push_back(object != no_index && !is_backdrop(shown, object));
+    return seen;
 }
 
 Image render(const NormalisedScene& scene, const RenderOptions& options, const Watch& watch) {

@@ -293,7 +293,7 @@ TEST_CASE("other renderers get cases of their own") {
     test::write(folder / "scene.toml", small_scene);
     // Stand-ins: programs that everybody has. One copies the picture that penumbra makes.
     const std::string copy = std::string("Same=") + PENUMBRA_PROGRAM +
-                             " render {scene} --size {width}x{height} -q -o {out:exr}";
+                             " render {scene} --size {width}x{height} --samples 1 -q -o {out:exr}";
     const Ended ended =
         run(folder.path, {"validate", "scene.toml", "--renderer", copy, "--renderer",
                           "Broken=sh -c 'echo no licence; exit 7' {out}", "--renderer",
@@ -325,7 +325,7 @@ TEST_CASE("a scene that penumbra crashes on does not stop the others") {
     // A renderer that ends the program that started it as a fault of its own would.
     const std::string renderer =
         std::string("Killer=sh -c 'case $1 in *bad*) kill -ABRT $PPID; sleep 5;; *) exec ") +
-        PENUMBRA_PROGRAM + " render $1 -q -o $2;; esac' sh {scene} {out:exr}";
+        PENUMBRA_PROGRAM + " render $1 --samples 1 -q -o $2;; esac' sh {scene} {out:exr}";
     for (const char* jobs : {"1", "2"}) {
         const Ended ended =
             run(folder.path, {"validate", "--each", "a.toml", "bad.toml", "c.toml", "d.toml",

@@ -51,6 +51,35 @@ TEST_CASE("options override the sidecar, and later ones earlier ones") {
     CHECK(size({"--size=20x10", "--size=21x11"}) == Size{21, 11});
 }
 
+TEST_CASE("render and export anti-alias unless they are told where rays go") {
+    const TempDir folder;
+    test::write(folder / "scene.toml", small_scene);
+    const auto picture = [&](const Words& more) {
+        Words words = {"render", "scene.toml", "-q", "-o", "a.exr"};
+        words.insert(words.end(), more.begin(), more.end());
+        REQUIRE(run(folder.path, words).status == 0);
+        return test::read(folder / "a.exr");
+    };
+    const std::string plain = picture({});
+    CHECK(plain == picture({"--antialias", "0.1", "--antialias-depth", "3"}));
+    CHECK(plain == picture({"--samples", "3", "--antialias-depth", "3"}));
+    CHECK(plain != picture({"--samples", "1"}));
+    CHECK(plain != picture({"--antialias-depth", "1"}));
+    CHECK(picture({"--samples", "1"}) ==
+          picture({"--antialias", "0", "--set", "render.samples=1"}));
+
+    const auto ini = [&](const Words& more) {
+        Words words = {"export", "scene.toml", "-q"};
+        words.insert(words.end(), more.begin(), more.end());
+        REQUIRE(run(folder.path, words).status == 0);
+        return test::read(folder / "scene.ini");
+    };
+    CHECK(ini({}).find("Sampling_Method=2\nAntialias_Threshold=0.1\nAntialias_Depth=3\n") !=
+          std::string::npos);
+    CHECK(ini({"--samples", "1"}).find("Antialias=Off\n") != std::string::npos);
+    CHECK(ini({"--samples", "2"}).find("Sampling_Method=1\n") != std::string::npos);
+}
+
 TEST_CASE("a setting that does not fit is named as the user typed it") {
     const TempDir folder;
     test::write(folder / "scene.toml", small_scene);
@@ -220,6 +249,7 @@ TEST_CASE("validate proves both pictures equal and writes a report") {
     CHECK(result["name"] == "scene");
     CHECK(result["verdict"] == "pass");
     CHECK(result["metrics"]["parity"]["value"] >= 0.999);
+    CHECK(result["sampling"] == json{{"samples", 1}});
     for (const char* const step : {"import", "render", "export", "povray", "compare"})
         CHECK(result["seconds"][step].is_number());
     for (const json& file : result["files"])
@@ -237,6 +267,35 @@ TEST_CASE("validate proves both pictures equal and writes a report") {
     CHECK(failing.out.starts_with("scene: "));
     CHECK(failing.out.find("report: scene-report/index.html\n") != std::string::npos);
     CHECK(entries(folder.path) == 2);
+}
+
+TEST_CASE("validate says how it sampled, in both pictures alike") {
+    if (!has_povray()) PENUMBRA_SKIP("POV-Ray is not installed");
+    const TempDir folder;
+    test::write(folder / "scene.toml", small_scene);
+    const Ended ended = run(folder.path, {"validate", "scene.toml", "--antialias", "0.2"});
+    CHECK(ended.status == 0);
+    const std::string used = "adaptive anti-aliasing, threshold 0.2, depth 3";
+    CHECK(ended.out.find("  both with " + used + "\n") != std::string::npos);
+    CHECK(test::read(folder / "scene-report/index.html").find(used) != std::string::npos);
+    const json report = json::parse(test::read(folder / "scene-report/report.json"));
+    const json& result = report["cases"][0];
+    CHECK(result["sampling"] == json{{"antialias", 0.2}, {"antialias_depth", 3}});
+    CHECK(result["metrics"]["exactness"]["value"] >= 0.999);
+}
+
+TEST_CASE("validate compares black things on black, and no backdrop alone") {
+    if (!has_povray()) PENUMBRA_SKIP("POV-Ray is not installed");
+    const TempDir folder;
+    const auto verdict_of = [&](const std::string& plane) {
+        test::write(folder / "scene.toml", "[render]\nsize = [32, 24]\n[[plane]]\n" + plane +
+                                               "material = \"coal\"\n[material.coal]\n"
+                                               "color = [0, 0, 0]\nspecular = 0\n");
+        const Ended ended = run(folder.path, {"validate", "scene.toml", "--json"});
+        return json::parse(ended.out)["cases"][0]["verdict"].get<std::string>();
+    };
+    CHECK(verdict_of("") == "pass");
+    CHECK(verdict_of("backdrop = true\n") == "not_comparable");
 }
 
 TEST_CASE("with --each one failing scene never stops the others") {

@@ -81,6 +81,10 @@ TEST_CASE("a wrong command line exits with 2 and one sentence") {
           "800x600\n");
     CHECK(error_of({"render", "a.obj", "--samples", "0"}) ==
           "penumbra: error: --samples: '0' is not a whole number from 1 to 9\n");
+    CHECK(error_of({"render", "a.obj", "--antialias", "fine"}) ==
+          "penumbra: error: --antialias: 'fine' is not a number from 0 to 1000\n");
+    CHECK(error_of({"render", "a.obj", "--antialias-depth", "10"}) ==
+          "penumbra: error: --antialias-depth: '10' is not a whole number from 1 to 9\n");
     CHECK(error_of({"render", "a.obj", "--exposure", "bright"}) ==
           "penumbra: error: --exposure: 'bright' is not a number from -32 to 32\n");
     CHECK(error_of({"render", "a.obj", "--normal-maps", "bump"}) ==

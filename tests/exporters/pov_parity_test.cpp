@@ -238,6 +238,25 @@ TEST_CASE("export, shows instances, sub-pixels and orthographic views as the tra
     require_exact(agreement(stage.scene, options));
 }
 
+TEST_CASE("export, makes POV-Ray anti-alias as the tracer does") {
+    NEEDS_POVRAY();
+    Stage stage;
+    Material mirror = shiny("mirror");
+    mirror.reflection = Color(0.5F);
+    stage.mesh(ball(stage.add(mirror)));
+    Material glass = shiny("glass");
+    glass.opacity = 0.2F;
+    glass.ior = 1.4F;
+    stage.sphere(glass);
+    Material checkers = shiny("checkers");
+    checkers.pattern = Checker{.colors = {Color(2), Color(0.1F)}, .size = 0.3};
+    stage.mesh(ball(stage.add(checkers)));
+    RenderOptions options = {.width = 120, .height = 90};
+    options.antialiasing = GENERATE(Antialiasing{0.1, 3}, Antialiasing{0, 2}, Antialiasing{0.03, 4},
+                                    Antialiasing{0.5, 9}, Antialiasing{0.3, 1});
+    require_exact(agreement(stage.scene, options));
+}
+
 TEST_CASE("export, is scaled so that small and far scenes keep their shadows") {
     NEEDS_POVRAY();
     Stage stage;

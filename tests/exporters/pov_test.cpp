@@ -178,6 +178,26 @@ TEST_CASE("export, equals the reviewed files") {
                        pov::geometry_text(pov::make_plan(meshes, small, "meshes")));
 }
 
+TEST_CASE("export, makes POV-Ray anti-alias by the same rule") {
+    const test::TempDir folder;
+    RenderOptions options = small;
+    options.samples = 12;  // does not count
+    options.antialiasing = Antialiasing{.threshold = 0.25, .depth = 4};
+    const Exported exported = write_pov(test::as_is(golden_meshes()), options, folder / "a.pov");
+    CHECK(exported.losses.empty());
+    CHECK(test::read(folder / "a.ini")
+              .find("; adaptive anti-aliasing, threshold 0.25, depth 4\n"
+                    "Antialias=On\n"
+                    "Sampling_Method=2\n"
+                    "Antialias_Threshold=0.25\n"
+                    "Antialias_Depth=4\n"
+                    "Antialias_Gamma=2.5\n"
+                    "Jitter=Off\n") != std::string::npos);
+    CHECK(test::read(folder / "a.pov")
+              .find("160 x 120 pixels, adaptive anti-aliasing, threshold 0.25, depth 4, 5 ") !=
+          std::string::npos);
+}
+
 TEST_CASE("export, writes every file that the scene needs") {
     const test::TempDir folder;
     RenderOptions options = small;

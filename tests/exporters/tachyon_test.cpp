@@ -198,6 +198,14 @@ TEST_CASE("a Tachyon scene, says what Tachyon lacks") {
     }
     CHECK(written.exported.losses.size() == expected.size());
     CHECK(has(written.text, "ANTIALIASING 9 "));
+
+    options.antialiasing = Antialiasing{.depth = 2};
+    const Written adaptive(scene, options);
+    const Loss loss = {Loss::approximated, "antialias",
+                       "every pixel has as many rays, at random in it"};
+    CHECK(std::ranges::count(adaptive.exported.losses, loss) == 1);
+    CHECK(adaptive.exported.losses.size() == expected.size());
+    CHECK(has(adaptive.text, "ANTIALIASING 4 "));
 }
 
 TEST_CASE("a Tachyon light, is 1 in the middle of the scene and fades as ours") {

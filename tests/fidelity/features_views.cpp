@@ -79,6 +79,13 @@ std::vector<Feature> picture_features() {
         all.push_back(staged(
             fmt::format("anti-aliasing, samples = {}", n), showing(rock()),
             {.render = fmt::format("samples = {}\n", n), .floor = tiles(), .rest = small_ball}));
+    for (const auto& [threshold, depth] : {std::pair{0.1, 3}, std::pair{0.02, 5}})
+        all.push_back(staged(
+            fmt::format("anti-aliasing, antialias = {}, depth {}", threshold, depth),
+            showing(rock()),
+            {.render = fmt::format("antialias = {}\nantialias_depth = {}\n", threshold, depth),
+             .floor = tiles(),
+             .rest = small_ball}));
     return all;
 }
 

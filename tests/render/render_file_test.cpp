@@ -269,6 +269,8 @@ TEST_CASE("the checkpoint of another picture is an error that names the differen
     CHECK(with([](RenderOptions& o) { o.samples = 3; }) == "samples 1, now 3");
     CHECK(with([](RenderOptions& o) { o.max_depth = 2, o.samples = 2; }) ==
           "samples 1, now 2; max_depth 5, now 2");
+    CHECK(with([](RenderOptions& o) { o.antialiasing = Antialiasing(); }) ==
+          "samples 1, now adaptive");
     CHECK(with([](RenderOptions& o) { o.exposure = 0.5; }) == "exposure 0, now 0.5");
     RenderFileOptions deep = resume;
     deep.save.bits = 16;

@@ -313,6 +313,10 @@ TEST_CASE("render options, without a picture are an error of usage") {
     CHECK(message({.samples = 256}).empty());
     CHECK(message({.samples = 2'000'000'000}) ==
           "a picture must have at most 256 x 256 samples a pixel, not 2000000000 x 2000000000");
+    CHECK(message({.antialiasing = Antialiasing{.threshold = -1}}) ==
+          "the threshold of anti-aliasing must be at least 0, not -1");
+    CHECK(message({.antialiasing = Antialiasing{.depth = 10}}) ==
+          "the depth of anti-aliasing must be from 1 to 9, not 10");
     CHECK(message({.max_depth = 0}) == "a path must have at least 1 ray segment, not 0");
     try {
         check({.width = 0});

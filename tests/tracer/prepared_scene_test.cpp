@@ -9,6 +9,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <functional>
@@ -189,6 +190,24 @@ TEST_CASE("Tracer, renders with other cameras, sizes, samples and rows") {
     tracer.render_rows(large, {32, 50}, [&](int first, const Image& rows) {
         CHECK(std::equal(rows.pixels.begin(), rows.pixels.end(), &whole.at(0, first)));
     });
+}
+
+TEST_CASE("Tracer, tells the subject of a picture from its backdrop") {
+    Scene scene = test::empty_scene();
+    scene.spheres = {{"ball", {0, 0, 0}, 1, 0}};
+    scene.planes = {{"wall", {0, 0, -5}, {0, 0, 1}, 0}};
+    scene.cameras[0].projection = Camera::Projection::orthographic;
+    const auto count = [&] {
+        const NormalisedScene normalised = test::as_is(scene);
+        const std::vector<bool> seen =
+            Tracer(normalised).subject_seen({.width = 40, .height = 40, .samples = 2});
+        REQUIRE(seen.size() == 40 * 40);
+        CHECK(seen[20 * 40 + 20]);
+        return double(std::count(seen.begin(), seen.end(), true)) / (40 * 40);
+    };
+    CHECK(count() == 1);
+    scene.planes[0].backdrop = true;
+    CHECK(count() == Approx(std::numbers::pi / 16).epsilon(0.02));
 }
 
 TEST_CASE("Tracer, can leave out shadows and the copies of sources") {

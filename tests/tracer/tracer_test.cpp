@@ -3,8 +3,10 @@
 
 #include "penumbra/tracer.h"
 
+#include <chrono>
 #include <cmath>
 #include <cstring>
+#include <thread>
 
 using namespace penumbra;
 
@@ -297,4 +299,19 @@ TEST_CASE("render, reports progress and stops on request") {
     CHECK(test::message_of([&] {
               (void)render(test::as_is(edge_shadow(0)), {.width = 64, .height = 64}, watch);
           }) == "interrupted");
+}
+
+TEST_CASE("render, stops in the middle of a tile that takes long") {
+    std::stop_source source;
+    const RenderOptions endless = {
+        .width = 32, .height = 32, .antialiasing = Antialiasing{.threshold = 0, .depth = 9}};
+    std::jthread user([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        source.request_stop();
+    });
+    const auto start = std::chrono::steady_clock::now();
+    CHECK(test::message_of([&] {
+              (void)render(test::as_is(edge_shadow(0.2)), endless, {.stop = source.get_token()});
+          }) == "interrupted");
+    CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(10));
 }

@@ -53,14 +53,15 @@ Scene stage() {
 const RenderOptions options = {.width = 96, .height = 72};
 
 // What the diagnosis says of a reference that was rendered with `change`.
-Comparison explained(const std::function<void(Scene&)>& change) {
+Comparison explained(const std::function<void(Scene&)>& change,
+                     const RenderOptions& shot = options) {
     Scene other = stage();
     change(other);
-    const Image picture = render(as_is(stage()), options);
-    const Image reference = render(as_is(other), options);
+    const Image picture = render(as_is(stage()), shot);
+    const Image reference = render(as_is(other), shot);
     Comparison result = compare(picture, reference, {.limits = profile_limits("equivalent")});
     CHECK(result.verdict == Verdict::fail);
-    explain(as_is(stage()), options, picture, reference, result);
+    explain(as_is(stage()), shot, picture, reference, result);
     INFO(joined(result.diagnosis));
     CHECK(has(joined(result.diagnosis), "of the mean square error"));
     return result;
@@ -161,6 +162,18 @@ TEST_CASE("A large picture is explained by a part of its pixels") {
     CHECK(result.cause == "light");
     CHECK(has(joined(result.diagnosis),
               "light source 'key' were 10 % brighter: that explains 100 %"));
+}
+
+TEST_CASE("Anti-aliased pictures, large ones too, are explained by anti-aliased ones") {
+    RenderOptions smooth = options;
+    smooth.antialiasing = Antialiasing();
+    const auto brighter = [](Scene& s) {
+        for (Light& l : s.lights) l.intensity *= 1.05;
+    };
+    CHECK(explained(brighter, smooth).cause == "light");
+    smooth.width = 480;
+    smooth.height = 360;
+    CHECK(explained(brighter, smooth).cause == "light");
 }
 
 TEST_CASE("A failed comparison of pictures of other sizes is not explained but refused") {

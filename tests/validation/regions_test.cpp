@@ -165,6 +165,45 @@ TEST_CASE("Figures of the covered part leave out the background") {
     CHECK(result.value("ssim_covered") < result.value("ssim"));
 }
 
+TEST_CASE("Figures of the covered part are of the objects where they are known") {
+    const Image reference = constant(40, 40, Color(0));
+    Image test = reference;
+    fill(test, {10, 10, 20, 30}, Color(0.6F));  // 200 of 1600 pixels
+    CompareOptions options;
+    options.covered.resize(40 * 40);
+    for (int y = 10; y < 30; ++y)
+        for (int x = 10; x < 30; ++x) options.covered[std::size_t(y * 40 + x)] = true;
+    const Comparison result = compare(test, reference, options);
+    CHECK(result.value("coverage") == 0.25);
+    CHECK(result.value("parity_covered") == Approx(0.5));
+    CHECK(result.value("rmse_covered") == Approx(2 * result.value("rmse")));
+
+    options.ignored = {{0, 0, 40, 20}};
+    CHECK(compare(test, reference, options).value("coverage") == 0.25);
+    options.covered.pop_back();
+    CHECK(test::message_of([&] { (void)compare(test, reference, options); }) ==
+          "what is covered must have a value for each of the 1600 pixels, not 1599");
+}
+
+TEST_CASE("Black objects on black are comparable where they are known") {
+    const Image black = constant(64, 48, Color(0));
+    CHECK(compare(black, black).verdict == Verdict::not_comparable);
+    CompareOptions options;
+    options.covered.assign(64 * 48, false);
+    std::fill_n(options.covered.begin(), 64, true);
+    const Comparison result = compare(black, black, options);
+    CHECK(result.verdict == Verdict::pass);
+    CHECK(result.value("coverage") == Approx(1.0 / 48));
+    CHECK(result.value("parity_covered") == 1);
+
+    options.covered.assign(64 * 48, false);
+    const Comparison empty = compare(black, black, options);
+    CHECK(empty.verdict == Verdict::not_comparable);
+    REQUIRE(empty.diagnosis.size() == 1);
+    CHECK(empty.diagnosis[0] == "only 0 % of the picture shows an object, at least 1 % must: point "
+                                "the camera at the scene");
+}
+
 TEST_CASE("An edge band is two pixels wide and apart from the inside") {
     Image reference = constant(50, 20, Color(0.2F)), test = reference;
     fill(reference, {25, 0, 50, 20}, Color(0.8F));

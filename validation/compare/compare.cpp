@@ -148,10 +148,20 @@ void diagnose(Comparison& result, const Pair& pair, float gain, const EdgeCounts
     result.diagnosis.push_back(explained ? said(finding) : finding.sentence);
 }
 
-std::string too_empty(const Metric& coverage) {
-    return fmt::format("only {:.2g} % of the picture shows something else than the background, at "
-                       "least {:.2g} % must: point the camera at the scene",
-                       100 * coverage.value, 100 * *coverage.limit);
+std::string too_empty(const Metric& coverage, bool by_objects) {
+    return fmt::format("only {:.2g} % of the picture shows {}, at least {:.2g} % must: point the "
+                       "camera at the scene",
+                       100 * coverage.value,
+                       by_objects ? "an object" : "something else than the background",
+                       100 * *coverage.limit);
+}
+
+void check_covered(const CompareOptions& options, const Image& test) {
+    const std::size_t given = options.covered.size();
+    if (given == 0 || given == test.pixels.size()) return;
+    throw Error(Failure::usage, "",
+                fmt::format("what is covered must have a value for each of the {} pixels, not {}",
+                            test.pixels.size(), given));
 }
 
 // Throws where there is not what a comparison takes beside the pictures at most: while it looks for
@@ -167,6 +177,7 @@ void compare_sources(Comparison& result, const Source& test, const Source& refer
                      const CompareOptions& options) {
     result.diagnosis = misfits(test.colors, reference.colors);
     if (!result.diagnosis.empty()) return;
+    check_covered(options, test.colors);
     const cv::Mat counted = counted_pixels(options, test.colors.width, test.colors.height);
     if (cv::countNonZero(counted) == 0) {
         result.diagnosis = {"the mask and the ignored boxes leave no pixel to compare"};
@@ -185,7 +196,7 @@ void compare_sources(Comparison& result, const Source& test, const Source& refer
     measured.ssim.release();
     set(result, "flip_p99", quantile(measured.flip, counted, 0.99));
     if (!metric(result, "coverage").ok()) {
-        result.diagnosis = {too_empty(metric(result, "coverage"))};
+        result.diagnosis = {too_empty(metric(result, "coverage"), !options.covered.empty())};
     } else {
         result.diagnosis =
             differing_area(measured.alike, counted, pair.opaque() ? "sRGB" : "sRGB or alpha");

@@ -87,7 +87,7 @@ Survey survey(const Pair& pair, const CompareOptions& options, float gain, bool 
         if (result.test_has_eight_bits) result.test_has_eight_bits = has_eight_bits(rows.test);
         if (result.reference_has_eight_bits)
             result.reference_has_eight_bits = has_eight_bits(rows.reference);
-        if (!options.background)
+        if (!options.background && options.covered.empty())
             count_border(span, pair.height(), border_rows(span, rows, pair.height()), border);
     });
     result.background = options.background
@@ -194,7 +194,8 @@ Shown inner(const Span& span, const Shown& rows) {
 // How measure() goes about it.
 struct Plan {
     float gain = 1;
-    int radius = 1;  // of outliers
+    int radius = 1;                    // of outliers
+    const std::vector<bool>& covered;  // as of CompareOptions
     Survey known = {};
 };
 
@@ -205,7 +206,10 @@ void measure_span(Measured& result, const Pair& pair, const Plan& plan, const Sp
     const bool rounded = plan.known.test_has_eight_bits != plan.known.reference_has_eight_bits;
     see_over_both(span, linear, both, rounded, maps);
     const ShownRows own = {inner(span, both.test), inner(span, both.reference)};
-    maps.covered = covered_pixels(own.test, own.reference, plan.known.background) & maps.counted;
+    maps.covered = plan.covered.empty()
+                       ? covered_pixels(own.test, own.reference, plan.known.background)
+                       : rows_of(plan.covered, pair.width(), span.first, span.last);
+    maps.covered &= maps.counted;
     maps.edges = span.inner(edge_band(both.reference.color)).clone();
     maps.either_edges = span.inner(edge_band(both.test.color)) | maps.edges;
     maps.alike = matched_pixels(own.test, own.reference, 0, display_step);
@@ -237,7 +241,8 @@ double mean_hdr_flip(const Pair& pair, const Exposures& exposures) {
 
 Measured measure(const Pair& pair, const CompareOptions& options, bool always_hdr) {
     Plan plan = {.gain = float(std::exp2(options.exposure)),
-                 .radius = std::max(1, options.shift_tolerance)};
+                 .radius = std::max(1, options.shift_tolerance),
+                 .covered = options.covered};
     plan.known = survey(pair, options, plan.gain, always_hdr);
     Measured result;
     result.alike.create(pair.height(), pair.width(), CV_8U);

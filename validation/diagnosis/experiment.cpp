@@ -88,7 +88,7 @@ Experiment::Experiment(const NormalisedScene& scene, const RenderOptions& option
     std::ranges::transform(objects, objects_.ptr<int>(),
                            [](Index object) { return object == no_index ? -1 : int(object); });
     // Means of pixels are not what the tracer makes of a small picture.
-    if (every_ > 1 && options_.samples > 1) base_ = with([](Variant&) {}).linear;
+    if (every_ > 1 && several_samples()) base_ = with([](Variant&) {}).linear;
 }
 
 cv::Mat Experiment::reduced(const Image& image) const {
@@ -99,7 +99,7 @@ cv::Mat Experiment::reduced(const Image& image) const {
     each_row(result.rows, [&](int y) {
         for (int x = 0; x < result.cols; ++x) {
             const cv::Rect block(left + x * every_, top + y * every_, every_, every_);
-            if (options_.samples > 1) {
+            if (several_samples()) {
                 const cv::Scalar mean = cv::mean(whole(block));
                 result.at<cv::Vec3f>(y, x) =
                     cv::Vec3f(float(mean[0]), float(mean[1]), float(mean[2]));

@@ -89,6 +89,7 @@ class Experiment {
 
   private:
     cv::Mat reduced(const Image& image) const;
+    bool several_samples() const { return options_.samples > 1 || options_.antialiasing; }
 
     NormalisedScene working_;
     Tracer tracer_;  ///< of working_

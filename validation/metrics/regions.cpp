@@ -73,6 +73,13 @@ cv::Mat covered_pixels(const Shown& test, const Shown& reference, const Backgrou
 }
 
 // The morphological gradient of Beucher and Lantuejoul 1979, of each channel.
+cv::Mat rows_of(const std::vector<bool>& pixels, int width, int first, int last) {
+    cv::Mat region(last - first, width, CV_8U);
+    auto pixel = pixels.begin() + std::ptrdiff_t(first) * width;
+    for (uchar& value : cv::Mat_<uchar>(region)) value = *pixel++ ? 255 : 0;
+    return region;
+}
+
 cv::Mat edge_band(const cv::Mat& encoded) {
     const cv::Mat square = cv::getStructuringElement(cv::MORPH_RECT, {3, 3});
     cv::Mat highest, lowest;

@@ -7,6 +7,8 @@
 
 #include <opencv2/core.hpp>
 
+#include <vector>
+
 namespace penumbra::metrics {
 
 /// Pixels that count: not ignored by the options. Throws Error (usage) when the mask has another
@@ -15,6 +17,9 @@ cv::Mat counted_pixels(const CompareOptions& options, int width, int height);
 
 /// Where either picture shows something else than the background.
 cv::Mat covered_pixels(const Shown& test, const Shown& reference, const Background& background);
+
+/// Rows first <= y < last of a picture's pixels, row by row from the top, as a region.
+cv::Mat rows_of(const std::vector<bool>& pixels, int width, int first, int last);
 
 /// Pixels beside an edge: whose 3 x 3 neighbourhood spans more than a tenth in some channel.
 cv::Mat edge_band(const cv::Mat& encoded);

@@ -35,6 +35,10 @@ std::string sizes(const Case& one) {
     return ", " + size(one.test) + " and " + size(one.reference) + " pixels";
 }
 
+std::string sampling(const Case& one) {
+    return one.sampling ? ", " + to_string(*one.sampling) : "";
+}
+
 std::string header(const Case& one, const std::string& index_link) {
     const std::string back =
         index_link.empty() ? ""
@@ -42,9 +46,9 @@ std::string header(const Case& one, const std::string& index_link) {
                                          "</a></nav>\n",
                                          markup::link(index_link));
     return fmt::format("<header>\n{}<h1><bdi>{}</bdi> {}</h1>\n<p class=\"quiet\"><bdi>{}</bdi> "
-                       "against <bdi>{}</bdi>{}</p>\n</header>\n",
+                       "against <bdi>{}</bdi>{}{}</p>\n</header>\n",
                        back, text(one.name), html::chip(one.comparison.verdict),
-                       text(one.test_name), text(one.reference_name), sizes(one));
+                       text(one.test_name), text(one.reference_name), sizes(one), sampling(one));
 }
 
 std::string diagnosis(const Case& one) {

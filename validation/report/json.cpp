@@ -77,6 +77,12 @@ Json json_strings(const std::vector<std::string>& strings) {
     return result;
 }
 
+Json json_sampling(const Sampling& sampling) {
+    if (!sampling.antialiasing) return {{"samples", sampling.samples}};
+    return {{"antialias", sampling.antialiasing->threshold},
+            {"antialias_depth", sampling.antialiasing->depth}};
+}
+
 constexpr std::array alpha_words = {std::pair{Alpha::none, "none"},
                                     std::pair{Alpha::counted, "counted"},
                                     std::pair{Alpha::ignored, "ignored"}};
@@ -99,6 +105,7 @@ Json json_case(const Case& one) {
     result["folder"] = clean(one.folder);
     result["test"] = clean(one.test_name);
     result["reference"] = clean(one.reference_name);
+    if (one.sampling) result["sampling"] = json_sampling(*one.sampling);
     result["verdict"] = to_string(comparison.verdict);
     result["severity"] = severity(one);
     result["warn_band"] = comparison.warn_band;
@@ -137,6 +144,11 @@ Loss::Kind kind_of(const std::string& word) {
 
 double number_of(const Json& json) {
     return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+
+Sampling sampling_of(const Json& json) {
+    if (json.contains("samples")) return {.samples = json.at("samples")};
+    return {.antialiasing = Antialiasing{json.at("antialias"), json.at("antialias_depth")}};
 }
 
 Comparison comparison_of(const Json& json) {
@@ -194,6 +206,7 @@ std::vector<Case> cases_of_json(const std::string& text) {
             one.test_name = json.at("test");
             one.reference_name = json.at("reference");
             one.comparison = comparison_of(json);
+            if (json.contains("sampling")) one.sampling = sampling_of(json.at("sampling"));
             for (const Json& loss : json.at("losses"))
                 one.losses.push_back({kind_of(loss.at("kind")), loss.at("place"), loss.at("what"),
                                       loss.at("count")});

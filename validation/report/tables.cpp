@@ -78,7 +78,7 @@ std::string from_page(const Case& one, const std::string& file) {
 std::string figures(const Comparison& comparison) {
     if (comparison.metrics.empty()) return "";
     const std::string parts = figure_rows(comparison, Part::whole, "The whole picture") +
-                              figure_rows(comparison, Part::covered, "What is not background") +
+                              figure_rows(comparison, Part::covered, "What is covered") +
                               figure_rows(comparison, Part::edges, "Beside and away from edges");
     return fmt::format(
         "<section class=\"card\">\n<h2>Figures</h2>\n<div class=\"wide\" tabindex=\"0\" "

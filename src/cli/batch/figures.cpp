@@ -78,6 +78,7 @@ std::string figures(const Case& result) {
             pixel_text(comparison, comparison.worst.test, comparison.worst.test_alpha),
             result.reference_name,
             pixel_text(comparison, comparison.worst.reference, comparison.worst.reference_alpha));
+    if (result.sampling) text += fmt::format("  both with {}\n", to_string(*result.sampling));
     for (const std::string& sentence : comparison.diagnosis)
         text += fmt::format("  {}\n", one_line(sentence));
     if (const std::string alpha = alpha_sentence(comparison); !alpha.empty())

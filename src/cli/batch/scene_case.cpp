@@ -8,6 +8,7 @@
 #include "penumbra/exporters.h"
 #include "penumbra/image.h"
 #include "penumbra/image_module.h"
+#include "penumbra/tracer.h"
 
 #include <fmt/format.h>
 
@@ -62,6 +63,7 @@ class SceneRun {
         prepared_ = prepare(context_, job_);
         report_.protect(prepared_.files);
         cases_[0].losses = prepared_.losses;
+        cases_[0].sampling = sampling_of(prepared_.options);
         cases_[0].seconds["import"] = import_time.seconds();
         report_losses(context_, prepared_.losses);
         compared_by_.background = prepared_.background;
@@ -115,6 +117,7 @@ class SceneRun {
                          "render " + job_.name, job_.quiet);
         prepared_.metered.reset();
         cases_[0].test = std::move(rendered.image);
+        compared_by_.covered = std::move(rendered.subject);
         cases_[0].seconds["render"] = rendered.build_seconds + rendered.render_seconds;
         save_image(folder() / "ours.exr", cases_[0].test);
         cases_[0].files["test"] = in_report(cases_[0], "ours.exr");
@@ -127,9 +130,9 @@ class SceneRun {
         povray.memory = job_.memory;
         povray.keep_exr = false;  // ours is of the raw pixels
         std::function<void(double)> progress;
+        const Work work = work_of(prepared_.options);
         if (!job_.quiet)
-            progress = context_.console.progress("povray " + job_.name,
-                                                 sample_count(prepared_.options), " samples");
+            progress = context_.console.progress("povray " + job_.name, work.count, work.unit);
         const Stopwatch watch;
         PovrayRun run = run_povray(folder() / (std::string(stem) + ".ini"), prepared_.options.width,
                                    prepared_.options.height, povray, {progress, context_.stop});
@@ -147,6 +150,7 @@ class SceneRun {
         other.name = fmt::format("{} [{}]", job_.name, renderer.name);
         other.folder = fmt::format("{}@{}", job_.folder, renderer.name);
         other.reference_name = renderer.name;
+        other.sampling = cases_[0].sampling;
         other.test = cases_[0].test;
         other.files["test"] = cases_[0].files["test"];
         other.commands = {shell_command(job_.words), shell_command(renderer.words)};
@@ -194,8 +198,8 @@ class SceneRun {
         Hash pictures, verdict;
         pictures.add(program_key());
         pictures.add(job_.povray);
-        pictures.add(fmt::format("{} {} {} {} {} {}", o.width, o.height, o.samples, o.max_depth,
-                                 o.exposure, int(job_.load.normal_maps)));
+        pictures.add(fmt::format("{} {} {} {} {} {}", o.width, o.height, to_string(sampling_of(o)),
+                                 o.max_depth, o.exposure, int(job_.load.normal_maps)));
         for (const OtherRenderer& renderer : context_.arguments.renderers) {
             pictures.add(renderer.name);
             for (const std::string& word : renderer.words) pictures.add(word);
@@ -233,6 +237,8 @@ class SceneRun {
 
     // The pictures are the same, the limits are not.
     bool judge_again(std::vector<Case> earlier, const CaseKey& key) {
+        compared_by_.covered =
+            Tracer(prepared_.scene, job_.threads).subject_seen(prepared_.options);
         for (Case& one : earlier) {
             make_folder(one.folder);
             if (one.comparison.verdict == Verdict::error) continue;

@@ -45,11 +45,11 @@ int render(const Context& context) {
     const double import_seconds = import_time.seconds();
 
     // The bar and its rate count what is rendered now.
-    const double samples = sample_count(options);
-    auto bar = context.console.progress("render", samples, " samples");
+    const Work work = work_of(options);
+    auto bar = context.console.progress("render", work.count, work.unit);
     const auto resumed = [&](int rows) {
-        const double rest = samples * (options.height - rows) / options.height;
-        bar = context.console.progress("render", rest, " samples");
+        const double rest = work.count * (options.height - rows) / options.height;
+        bar = context.console.progress("render", rest, work.unit);
         context.console.detail(
             fmt::format("{} of {} rows are from the checkpoint", rows, options.height));
     };

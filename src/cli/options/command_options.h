@@ -80,6 +80,14 @@ class CommandOptions : public OptionReader {
         });
     }
 
+    // One that stands for a whole number from 1 to `most` in [render].
+    void whole_setting(const std::string& name, const char* key, double most,
+                       const std::string& what) {
+        setting(name, "N", what, [=](const std::string& text) {
+            return fmt::format("render.{}={}", key, read_integer(name, text, {1, most}));
+        });
+    }
+
     void limit(const std::string& name, const std::string& metric, const std::string& what) {
         const std::string help = fmt::format("{} ({})", what, default_limits().at(metric));
         value(name, "X", help, [this, name, metric](const std::string& text) {
@@ -240,14 +248,8 @@ class CommandOptions : public OptionReader {
 
     void declare_rendering() {
         group = "Rendering";
-        setting("--samples", "N", "Samples per pixel: 1, or a grid of N x N and the centre (1)",
-                [](const std::string& text) {
-                    return fmt::format("render.samples={}",
-                                       read_integer("--samples", text, {1, 9}));
-                });
-        setting("--max-depth", "N", "Ray segments along a path (5)", [](const std::string& text) {
-            return fmt::format("render.max_depth={}", read_integer("--max-depth", text, {1, 256}));
-        });
+        declare_sampling();
+        whole_setting("--max-depth", "max_depth", 256, "Ray segments along a path (5)");
         setting("--exposure", "EV|auto",
                 "Brighten by 2^EV (0; auto where the model brings its own light)",
                 [](const std::string& text) -> std::string {
@@ -262,6 +264,22 @@ class CommandOptions : public OptionReader {
               [this](const std::string& text) {
                   arguments_.threads = read_integer("--threads", text, {0, 1024});
               });
+    }
+
+    void declare_sampling() {
+        const bool one = arguments_.command == Command::validate;
+        whole_setting("--samples", "samples", 9,
+                      fmt::format("Samples per pixel: 1, or a grid of N x N and the centre{}",
+                                  one ? " (1)" : ""));
+        setting("--antialias", "X",
+                fmt::format("More samples where a pixel's corners differ by X or more{}",
+                            one ? "" : " (0.1)"),
+                [](const std::string& text) {
+                    return fmt::format("render.antialias={}",
+                                       read_number("--antialias", text, {0, 1000}));
+                });
+        whole_setting("--antialias-depth", "antialias_depth", 9,
+                      "Of these: cut a pixel into 2^(N-1) x 2^(N-1) cells at most (3)");
     }
 
     void declare_povray() {

@@ -14,7 +14,7 @@ struct Description {
 
 inline constexpr Description descriptions[] = {
     {Command::render, "render", "Render a scene with the native ray tracer",
-     "  penumbra render chair.glb -o chair.png --size 1280x720 --samples 3"},
+     "  penumbra render chair.glb -o chair.png --size 1280x720"},
     {Command::export_scene, "export",
      "Write the equivalent POV-Ray 3.7 scene, or a similar one of Tachyon",
      "  penumbra export chair.glb -o chair.pov && povray chair.ini\n"

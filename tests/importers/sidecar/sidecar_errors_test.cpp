@@ -26,7 +26,7 @@ TEST_CASE("A mistyped key is named with what was meant") {
           "studio.toml:2:1: unknown key 'raduis' in [[sphere]] (did you mean 'radius'?)");
     CHECK(problem("[[sphere]]\ncenter = [0, 0, 0]\n  colour = 1") ==
           "studio.toml:3:3: unknown key 'colour' in [[sphere]] (known keys: name, center, radius, "
-          "material)");
+          "backdrop, material)");
     CHECK(problem("[lihgting]\nambient = 1") ==
           "studio.toml:1:2: unknown key 'lihgting' at the top level (did you mean 'lighting'?)");
     CHECK(problem("[[light]]\nposition = [0, 1, 0]\npenumbra = { dleta = 1 }") ==
@@ -94,6 +94,12 @@ TEST_CASE("A value out of range is named with the range") {
           "studio.toml:2:7: 'fov' in [camera] must be above 0 and below 180, not 180");
     CHECK(problem("[render]\nsamples = 10") ==
           "studio.toml:2:11: 'samples' in [render] must be from 1 to 9, not 10");
+    CHECK(problem("[render]\nantialias_depth = 10") ==
+          "studio.toml:2:19: 'antialias_depth' in [render] must be from 1 to 9, not 10");
+    CHECK(problem("[render]\nantialias = -1") ==
+          "studio.toml:2:13: 'antialias' in [render] must be from 0 to 1000, not -1");
+    CHECK(problem("[render]\nsamples = 2\nantialias = 0.1") ==
+          "studio.toml:3:13: 'antialias' in [render] cannot stand beside samples");
     CHECK(problem("[render]\nsize = [0, 10]") ==
           "studio.toml:2:9: 'size' in [render] must be from 1 to 32767, not 0");
     CHECK(problem("[[plane]]\nnormal = [0, 0, 0]") ==

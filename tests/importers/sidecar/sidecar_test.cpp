@@ -55,6 +55,32 @@ TEST_CASE("[render] and [lighting] set what a picture is made with") {
     CHECK(load("[lighting]\nambient = 0.5").scene.ambient == Color(0.5F));
 }
 
+TEST_CASE("[render] says where rays go through a pixel") {
+    CHECK_FALSE(load("[[sphere]]").sampled);
+    const Imported fixed = load("[render]\nsamples = 1");
+    CHECK(fixed.sampled);
+    CHECK_FALSE(fixed.render.antialiasing);
+    const Imported adaptive = load("[render]\nantialias = 0.25");
+    CHECK(adaptive.sampled);
+    REQUIRE(adaptive.render.antialiasing);
+    CHECK(adaptive.render.antialiasing->threshold == 0.25);
+    CHECK(adaptive.render.antialiasing->depth == 3);
+    const Imported deep = load("[render]\nantialias_depth = 5");
+    REQUIRE(deep.render.antialiasing);
+    CHECK(deep.render.antialiasing->threshold == 0.1);
+    CHECK(deep.render.antialiasing->depth == 5);
+}
+
+TEST_CASE("backdrop marks spheres and planes that the picture is not of") {
+    const Scene scene = load("[[sphere]]\nbackdrop = true\n[[sphere]]\n[[plane]]\n"
+                             "[[plane]]\nbackdrop = true")
+                            .scene;
+    CHECK(scene.spheres[0].backdrop);
+    CHECK_FALSE(scene.spheres[1].backdrop);
+    CHECK_FALSE(scene.planes[0].backdrop);
+    CHECK(scene.planes[1].backdrop);
+}
+
 TEST_CASE("[camera] places a camera of its own and makes it the active one") {
     const Camera given =
         camera("position = [1, 2, 6]\nlook_at = [1, 2, 0]\nup = [1, 0, 0]\nfov = 50");
