@@ -185,7 +185,8 @@ void write_objects(Output& out) {
 
 void note_losses(Output& out, const RenderOptions& render) {
     const Scene& scene = out.scene;
-    if (scene.sky) out.note_loss(Loss::dropped, "background", "", "the image is left out");
+    if (scene.sky || scene.mirror_sky)
+        out.note_loss(Loss::dropped, "background", "", "the image is left out");
     if (render.samples > 1)
         out.note_loss(Loss::approximated, "samples", "", "rays lie at random in the pixel");
     const auto splits = [](const Material& m) {

@@ -184,7 +184,7 @@ void complete(Scene& scene, double aspect) {
     give_material(scene, scene.spheres);
     give_material(scene, scene.planes);
     give_camera(scene, aspect);
-    if (scene.lights.empty()) give_lights(scene);
+    if (scene.lights.empty() && !scene.environment) give_lights(scene);
 }
 
 }  // namespace penumbra

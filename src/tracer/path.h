@@ -16,6 +16,7 @@ struct Path {
     Vec3 weight = Vec3(1);  ///< of its light in the pixel
     std::uint32_t pixel = 0;
     int level = 1;  ///< ray segments so far, this one included; going straight through adds none
+    bool mirrored = false;  ///< it was reflected, and sees Scene::mirror_sky from then on
     MediumStack inside = {};
 };
 

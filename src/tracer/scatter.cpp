@@ -91,6 +91,7 @@ bool transmit(const PreparedScene& prepared, const SurfacePoints& surfaces, std:
     const double share = material.opacity < 1 ? 1 : 1 - surfaces.alpha[slot];
     Path back = path;
     ++back.level;
+    back.mirrored = true;
     back.weight *= left * share;
     onward.next.push(position, surfaces.reflected[slot].normalized(), back);
     return true;
@@ -115,6 +116,7 @@ void scatter(const PreparedScene& prepared, const SurfacePoints& surfaces, std::
                                      -surfaces.view[slot].dot(surfaces.normal[slot]));
     Path back = path;
     ++back.level;
+    back.mirrored = true;
     back.weight *= share;
     onward.next.push(position, surfaces.reflected[slot].normalized(), back);
 }

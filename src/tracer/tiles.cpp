@@ -112,12 +112,19 @@ void find_hits(const PreparedScene& prepared, bool coherent, Workspace& work) {
     prepared.facets->closest(work.current.rays, work.hits, coherent);
 }
 
+Vec3 light_of(const PreparedScene& prepared, const Sky& sky, const Vec3& direction) {
+    const Vec2 uv = sky_texcoord(sky, direction);
+    return Vec3(sample(prepared.textures[sky.texture], uv.x, uv.y)) * sky.gain;
+}
+
 // What a ray that hits nothing sees.
-Vec3 sky_light(const PreparedScene& prepared, const Vec3& direction) {
-    if (!prepared.scene.sky) return Vec3(prepared.scene.background);
-    const Vec2 uv = sky_texcoord(direction);
-    return Vec3(sample(prepared.textures[prepared.scene.sky->texture], uv.x, uv.y)) *
-           prepared.scene.sky->gain;
+Vec3 sky_light(const PreparedScene& prepared, const Rays& rays, std::size_t i, bool mirrored) {
+    const Scene& scene = prepared.scene;
+    const Vec3 direction = rays.direction[i];
+    if (mirrored && scene.mirror_sky)
+        return light_of(prepared, *scene.mirror_sky, on_mirror_sky(rays.origin[i], direction));
+    if (scene.sky) return light_of(prepared, *scene.sky, direction);
+    return Vec3(scene.background);
 }
 
 // Lists the rays that hit something. What mirrors scatter is brought together again, so that blocks
@@ -127,8 +134,9 @@ void order_hits(const PreparedScene& prepared, bool coherent, Workspace& work) {
     work.order.clear();
     for (std::size_t i = 0; i < rays.rays.count; ++i) {
         if (work.hits.object[i] == no_index) {
-            work.pixels[rays.paths[i].pixel] +=
-                rays.paths[i].weight * sky_light(prepared, rays.rays.direction[i]);
+            const Path& path = rays.paths[i];
+            work.pixels[path.pixel] +=
+                path.weight * sky_light(prepared, rays.rays, i, path.mirrored);
             continue;
         }
         std::uint64_t key = 0;
