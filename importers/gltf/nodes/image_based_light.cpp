@@ -37,8 +37,8 @@ std::vector<Color> radiance(const Raster& raster) {
     return result;
 }
 
-// Throws Error (input).
-LightCube cube_of(const Reader& reader, const tinygltf::Value& faces) {
+// `claim` is for what it holds. Throws Error (input).
+LightCube cube_of(const Reader& reader, const tinygltf::Value& faces, MemoryClaim& claim) {
     if (faces.ArrayLen() != 6)
         throw Error(Failure::input, "", "its first cube map must have 6 faces");
     LightCube cube;
@@ -49,6 +49,7 @@ LightCube cube_of(const Reader& reader, const tinygltf::Value& faces) {
         if (raster.width != raster.height || (i > 0 && raster.width != cube.size))
             throw Error(Failure::input, "",
                         "the faces of its cube map must be squares of one size");
+        if (i == 0) claim = MemoryClaim(6 * raster.texels() * sizeof(Color), "image-based light");
         cube.size = raster.width;
         cube.faces[i] = radiance(raster);
     }
@@ -70,7 +71,8 @@ void read_image_based_light(Reader& reader, const tinygltf::Scene& scene) {
             throw Error(Failure::input, "", "it has no cube map");
         const std::string name = light.Has("name") ? light.Get("name").Get<std::string>()
                                                    : std::string("image-based light");
-        const LightCube cube = cube_of(reader, light.Get("specularImages").Get(0));
+        MemoryClaim claim;
+        const LightCube cube = cube_of(reader, light.Get("specularImages").Get(0), claim);
         Scene& to = reader.scene;
         to.textures.push_back(equirectangular(cube, name));
         Environment& environment = set_environment(to, Index(to.textures.size() - 1), name);
