@@ -6,6 +6,7 @@
 #include "exporters/pov/plan.h"
 #include "exporters/pov/sdl.h"
 #include "exporters/shared/targets.h"
+#include "scene/mirror_sky.h"
 
 #include "penumbra/exporters.h"
 #include "penumbra/light_model.h"
@@ -109,7 +110,8 @@ struct Writer {
                "  " +
                pov::sky_pigment(plan, *s.mirror_sky) +
                "\n  }\n  finish { ambient 0 diffuse 0 emission 1 }\n  scale " +
-               number(mirror_sky_radius) + " inverse hollow no_image no_shadow\n}\n";
+               number(mirror_sky_radius) + " translate " + sdl::vector(mirror_sky_center(s)) +
+               " inverse hollow no_image no_shadow\n}\n";
     }
 
     void camera() {

@@ -2,6 +2,7 @@
 #include "tracer/tiles.h"
 
 #include "base/isolated.h"
+#include "scene/mirror_sky.h"
 #include "scene/view.h"
 #include "tracer/back_light.h"
 #include "tracer/direct_light.h"
@@ -68,6 +69,7 @@ struct Job {
     const RenderOptions& options;
     const std::vector<PixelSample> samples;
     const MediumStack inside;  // where the eye is
+    const Vec3 sky_center = mirror_sky_center(prepared.scene);
 };
 
 // The ray through a point of the picture, in pixels from its upper left corner.
@@ -118,25 +120,27 @@ Vec3 light_of(const PreparedScene& prepared, const Sky& sky, const Vec3& directi
 }
 
 // What a ray that hits nothing sees.
-Vec3 sky_light(const PreparedScene& prepared, const Rays& rays, std::size_t i, bool mirrored) {
+Vec3 sky_light(const Job& job, const Rays& rays, std::size_t i, bool mirrored) {
+    const PreparedScene& prepared = job.prepared;
     const Scene& scene = prepared.scene;
     const Vec3 direction = rays.direction[i];
     if (mirrored && scene.mirror_sky)
-        return light_of(prepared, *scene.mirror_sky, on_mirror_sky(rays.origin[i], direction));
+        return light_of(prepared, *scene.mirror_sky,
+                        on_mirror_sky(rays.origin[i] - job.sky_center, direction));
     if (scene.sky) return light_of(prepared, *scene.sky, direction);
     return Vec3(scene.background);
 }
 
 // Lists the rays that hit something. What mirrors scatter is brought together again, so that blocks
 // of surface points stay small.
-void order_hits(const PreparedScene& prepared, bool coherent, Workspace& work) {
+void order_hits(const Job& job, bool coherent, Workspace& work) {
+    const PreparedScene& prepared = job.prepared;
     const Generation& rays = work.current;
     work.order.clear();
     for (std::size_t i = 0; i < rays.rays.count; ++i) {
         if (work.hits.object[i] == no_index) {
             const Path& path = rays.paths[i];
-            work.pixels[path.pixel] +=
-                path.weight * sky_light(prepared, rays.rays, i, path.mirrored);
+            work.pixels[path.pixel] += path.weight * sky_light(job, rays.rays, i, path.mirrored);
             continue;
         }
         std::uint64_t key = 0;
@@ -181,7 +185,7 @@ void trace_generations(const Job& job, Workspace& work) {
     bool coherent = true;
     while (work.current.rays.count > 0) {
         find_hits(job.prepared, coherent, work);
-        order_hits(job.prepared, coherent, work);
+        order_hits(job, coherent, work);
         find_surface_points(job.prepared, work);
         work.radiance.clear(work.surfaces.count);
         add_direct_light(job.prepared, work.surfaces, work.light, work.radiance);
