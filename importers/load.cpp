@@ -195,6 +195,7 @@ Bounds lay_layers(const Request& request, const LoadOptions& options, Imported& 
     bool sized = false;
     request.for_each_layer([&](const Layer& layer) {
         sized |= lay_globals(layer, result, files);
+        lay_environment(layer, scene, files);
         lay_objects(layer, scene);
         lay_lights(layer, scene);
     });

@@ -142,11 +142,16 @@ std::string pigment(const Plan& plan, const Look& look, const Passing& passing) 
     return color(material.color, passing);
 }
 
-std::string sky_pigment(const Plan& plan) {
+std::string sky_pigment(const Plan& plan, const Sky& sky) {
+    const ImageMap map{.texture = sky.texture};
+    const auto turned = [&](const Vec3& axis) {
+        Vec3 result(0);
+        sky.rotation.multDirMatrix(axis, result);
+        return result;
+    };
     // POV-Ray's image begins in +x and runs towards +z; ours has its middle in -z.
-    const ImageMap map{.texture = plan.scene->sky->texture};
     return "image_map { " + image_file(plan, map) + " map_type 1 }\n    " +
-           matrix({0, 0, 1}, {0, 1, 0}, {-1, 0, 0}, Vec3(0));
+           matrix(turned({0, 0, 1}), turned({0, 1, 0}), turned({-1, 0, 0}), Vec3(0));
 }
 
 }  // namespace penumbra::pov

@@ -33,7 +33,7 @@ std::string image_pigment(const Plan& plan, const Look& look, const ImageMap& ma
 /// The look's pattern or colour.
 std::string pigment(const Plan& plan, const Look& look, const Passing& passing);
 
-/// The pigment of Scene::sky.
-std::string sky_pigment(const Plan& plan);
+/// The pigment of a sky.
+std::string sky_pigment(const Plan& plan, const Sky& sky);
 
 }  // namespace penumbra::pov

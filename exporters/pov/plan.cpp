@@ -376,7 +376,8 @@ Plan make_plan(const Scene& scene, const RenderOptions& render, const std::strin
     planner.ranges.resize(scene.textures.size());
     planner.add_objects();
     planner.plan.backs = backs(scene);
-    if (scene.sky) planner.use_texture(scene.sky->texture, {Range{0, 1}, Range{0, 1}});
+    for (const std::optional<Sky>& sky : {scene.sky, scene.mirror_sky})
+        if (sky) planner.use_texture(sky->texture, {Range{0, 1}, Range{0, 1}});
     for (std::size_t i = 0; i < scene.textures.size(); ++i)
         if (planner.ranges[i][0].min <= planner.ranges[i][0].max)
             planner.add_texture(scene.textures[i], planner.ranges[i], planner.plan.textures[i]);

@@ -7,6 +7,7 @@
 #include "exporters/pov/plan.h"
 #include "exporters/pov/sdl.h"
 #include "exporters/shared/targets.h"
+#include "scene/mirror_sky.h"
 
 #include "penumbra/exporters.h"
 #include "penumbra/light_model.h"
@@ -100,8 +101,23 @@ struct Writer {
         out += fmt::format("  max_trace_level {}\n", std::min(render.max_depth, 256));
         out += "  adc_bailout 0\n  ambient_light " + sdl::color(scene.scene.ambient) + "\n}\n\n";
         out += "background { " + sdl::color(scene.scene.background) + " }\n";
-        if (!scene.scene.sky) return;
-        out += "sky_sphere {\n  pigment {\n    " + pov::sky_pigment(plan) + "\n  }\n}\n";
+        sky();
+    }
+
+    // A ray that was mirrored once sees what is marked no_image, and so do all that come of it.
+    // Inverted, the sphere has no interior that rays would be inside of.
+    void sky() {
+        const Scene& s = scene.scene;
+        if (s.sky)
+            out +=
+                "sky_sphere {\n  pigment {\n    " + pov::sky_pigment(plan, *s.sky) + "\n  }\n}\n";
+        if (!s.mirror_sky) return;
+        out += "\n// what mirrors show where they show nothing else\nsphere { 0, 1\n  pigment {\n  "
+               "  " +
+               pov::sky_pigment(plan, *s.mirror_sky) +
+               "\n  }\n  finish { ambient 0 diffuse 0 emission 1 }\n  scale " +
+               number(mirror_sky_radius) + " translate " + sdl::vector(mirror_sky_center(s)) +
+               " inverse hollow no_image no_shadow\n}\n";
     }
 
     void camera() {
@@ -222,6 +238,7 @@ struct Writer {
             l.penumbra.delta = 0;
             light(l);
         }
+        sky();
         out += "object { " + name + " }\n";
         const std::string example = std::exchange(out, above);
         out += "//\n// Use it in a scene of your own in this folder, such as:\n//\n";

@@ -187,7 +187,8 @@ void write_objects(Output& out) {
 
 void note_losses(Output& out, const RenderOptions& render) {
     const Scene& scene = out.scene;
-    if (scene.sky) out.note_loss(Loss::dropped, "background", "", "the image is left out");
+    if (scene.sky || scene.mirror_sky)
+        out.note_loss(Loss::dropped, "background", "", "the image is left out");
     if (render.antialiasing)
         out.note_loss(Loss::approximated, "antialias", "",
                       "every pixel has as many rays, at random in it");

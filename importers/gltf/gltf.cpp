@@ -6,6 +6,7 @@
 #include "importers/gltf/material/texture.h"
 #include "importers/gltf/nodes/animation_pointer.h"
 #include "importers/gltf/nodes/camera.h"
+#include "importers/gltf/nodes/image_based_light.h"
 #include "importers/gltf/nodes/lights.h"
 #include "importers/gltf/nodes/mesh.h"
 #include "importers/gltf/nodes/pose.h"
@@ -248,6 +249,7 @@ Imported read(FileContent content, const ModelOptions& options, const Nesting& n
     offer_facets(reader);
     Walker walker{reader};
     walker.walk();
+    if (!model.scenes.empty()) read_image_based_light(reader, chosen_scene(reader));
     drop_unused_materials(imported.scene);
     for (const Loss& loss : reader.primitive_losses.losses()) losses.add_alone(loss);
     if (!imported.scene.cameras.empty()) imported.scene.camera = 0;

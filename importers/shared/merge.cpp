@@ -30,6 +30,17 @@ Vec3 turned(const Vec3& direction, const Matrix& transform) {
     return result.normalized();
 }
 
+// A rotation that turns directions as `transform` does, or nearly so: it may scale as well.
+Matrix rotation_of(const Matrix& transform) {
+    Matrix m;
+    for (int row = 0; row < 3; ++row) {
+        const Vec3 axis =
+            Vec3(transform[row][0], transform[row][1], transform[row][2]).normalized();
+        for (int column = 0; column < 3; ++column) m[row][column] = axis[column];
+    }
+    return is_rotation(m) ? m : Matrix();
+}
+
 // Lengths that have no direction scale by the mean of the transform's scales.
 void transform_all(Scene& part, const Matrix& transform) {
     if (transform == Matrix()) return;
@@ -48,6 +59,7 @@ void transform_all(Scene& part, const Matrix& transform) {
         camera.up = turned(camera.up, transform);
         camera.extent *= scale;
     }
+    if (part.environment) part.environment->rotation *= rotation_of(transform);
 }
 
 }  // namespace
@@ -56,12 +68,13 @@ Model add_model(Imported& whole, Imported&& part) {
     Scene& to = whole.scene;
     // By name, so that a new member of Scene is an error here until it has been looked at.
     auto& [materials, textures, meshes, instances, spheres, planes, lights, cameras, camera,
-           background, sky, ambient] = part.scene;
-    assert(spheres.empty() && planes.empty() && !sky);
+           background, sky, mirror_sky, environment, ambient] = part.scene;
+    assert(spheres.empty() && planes.empty() && !sky && !mirror_sky);
     const Model range = {.mesh = to.meshes.size(), .meshes = meshes.size()};
     for (Material& material : materials) shift_textures(material, to.textures.size());
     for (Mesh& mesh : meshes) shift(mesh.material, to.materials.size());
     for (Instance& instance : instances) shift(instance.mesh, to.meshes.size());
+    if (environment) shift(environment->texture, to.textures.size());
     append(to.materials, materials);
     append(to.textures, textures);
     append(to.meshes, meshes);
@@ -79,6 +92,7 @@ void place_model(Scene& whole, Scene placed, const Matrix& transform) {
     append(whole.instances, placed.instances);
     append(whole.lights, placed.lights);
     append(whole.cameras, placed.cameras);
+    if (!whole.environment) whole.environment = std::move(placed.environment);
 }
 
 }  // namespace penumbra

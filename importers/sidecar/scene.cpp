@@ -1,6 +1,7 @@
 // [[model]], [render], [lighting], [[sphere]] and [[plane]].
 #include "importers/shared/formats.h"
 #include "importers/sidecar/sidecar.h"
+#include "scene/transforms.h"
 
 #include <fmt/format.h>
 
@@ -9,20 +10,6 @@
 namespace penumbra {
 
 namespace {
-
-// Right-handed rotation of row vectors about axis 0, 1 or 2; exact at quarter turns.
-Matrix rotation(int axis, double angle) {
-    const double turn = std::remainder(angle, 360.0);
-    double c = std::cos(radians(turn)), s = std::sin(radians(turn));
-    if (std::remainder(turn, 90.0) == 0) c = std::round(c), s = std::round(s);
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    Matrix m;
-    m[u][u] = c;
-    m[u][v] = s;
-    m[v][u] = -s;
-    m[v][v] = c;
-    return m;
-}
 
 void read_matrix(Section& section, Placement& placement) {
     std::array<double, 16> m = {};
@@ -130,14 +117,14 @@ Matrix Placement::transform() const {
     Matrix scaling, translation;
     scaling.setScale(scale);
     translation.setTranslation(translate);
-    return scaling * rotation(0, rotate.x) * rotation(1, rotate.y) * rotation(2, rotate.z) *
-           translation;
+    return scaling * rotation_about(0, rotate.x) * rotation_about(1, rotate.y) *
+           rotation_about(2, rotate.z) * translation;
 }
 
 void check_top_level(const Layer& layer) {
     Section top(layer, layer.table);
-    for (const char* key :
-         {"render", "lighting", "camera", "light", "sphere", "plane", "model", "material"})
+    for (const char* key : {"render", "lighting", "environment", "camera", "light", "sphere",
+                            "plane", "model", "material"})
         top.has(key);
     top.finish();
 }

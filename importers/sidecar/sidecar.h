@@ -54,6 +54,9 @@ Index load_texture(Section& section, const std::string& key, const std::string& 
 /// [render] and [lighting]. Returns whether the picture's size is named.
 bool lay_globals(const Layer& layer, Imported& result, TextureFiles& files);
 
+/// [environment].
+void lay_environment(const Layer& layer, Scene& scene, TextureFiles& files);
+
 /// [[sphere]] and [[plane]].
 void lay_objects(const Layer& layer, Scene& scene);
 

@@ -67,7 +67,15 @@ inline Vec2 map_texcoord(const ImageMap& map, const Vec2& uv) {
 inline double cutoff_threshold(float cutoff) { return double(cutoff) - 1e-6; }
 
 /// Texture coordinates of a Sky in the unit direction `d`.
-Vec2 sky_texcoord(const Vec3& d);
+Vec2 sky_texcoord(const Sky& sky, const Vec3& d);
+
+/// POV-Ray shows Scene::mirror_sky on a sphere of this radius around the middle of a normalised
+/// scene: nearer than its rays' end at 10^7, and so far that it hardly matters where they start.
+inline constexpr double mirror_sky_radius = 8388608;
+
+/// The point of that sphere, divided by its radius, that a ray meets from within; both are counted
+/// from the middle. Precondition: `direction` is unit and `origin` inside.
+Vec3 on_mirror_sky(const Vec3& origin, const Vec3& direction);
 
 /// Texture coordinates of a sphere at the unit vector `p` from its centre: longitude and latitude,
 /// readable from outside; the left edge of the image is at +x and it runs towards -z.

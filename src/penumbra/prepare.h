@@ -7,13 +7,16 @@
 #include "penumbra/scene.h"
 
 #include <cstddef>
+#include <span>
+#include <string>
 
 namespace penumbra {
 
 /// Gives a scene what a picture needs and its author left out: a material for everything without
-/// one, a camera framed on the bounds from front-right-above, and, when it has no light, a rig of
-/// three sources sized to the bounds. `aspect` is width / height. Precondition: that of bounds(),
-/// aspect > 0, and where there are cameras scene.camera is one of them or no_index.
+/// one, a camera framed on the bounds from front-right-above, and, when it has neither lights nor
+/// an environment, a rig of three sources sized to the bounds. `aspect` is width / height.
+/// Precondition: that of bounds(), aspect > 0, and where there are cameras scene.camera is one of
+/// them or no_index.
 void complete(Scene& scene, double aspect);
 
 /// Gives `mesh` the tangents that a normal map at `map` needs: per vertex, in the direction in
@@ -84,10 +87,41 @@ enum class NormalMaps {
 /// Does so. Precondition and errors: those of bake_normal_maps().
 Losses settle_normal_maps(Scene& scene, NormalMaps choice);
 
+/// Environments of our own, computed and not photographed. A white Lambertian surface that faces
+/// most of the light shows about 0.92 in all of them.
+enum class Surroundings {
+    studio,    ///< soft boxes: key behind the camera to the left, fill to the right, rim beyond
+    overcast,  ///< a white sky over grey ground
+    sunset,    ///< a low sun to the left of -z, behind who looks there
+    night,     ///< coloured lamps around a dark place
+};
+
+/// Their names, in their order: "studio", "overcast", "sunset", "night".
+std::span<const char* const> surroundings_names();
+
+/// Gives the scene one of them in place of the environment that it has: adds its image to the
+/// textures, and sets Environment::name, texture and before_camera. What else an Environment says
+/// stays, or is the default. Lights that the scene has stay, too.
+Environment& set_surroundings(Scene& scene, Surroundings which);
+
+/// Gives the scene an image of its textures as environment, likewise.
+Environment& set_environment(Scene& scene, Index texture, const std::string& name);
+
+/// Gives the scene an environment that has one radiance everywhere, likewise.
+Environment& set_uniform_environment(Scene& scene, const Color& radiance);
+
+/// Makes of Scene::environment what both renderers have: directional lights, each with the flux of
+/// a part of all directions, and a Sky, or a mirror_sky where the camera does not see it. Phong
+/// lobes are widened by as much as the lights stand for, so that surfaces do not show them one by
+/// one. normalise() does so. Does nothing to a scene without an environment.
+/// Precondition: defects(scene) finds nothing in environment, cameras and textures.
+void light_by_environment(Scene& scene);
+
 /// A scene in the units that both renderers work in. POV-Ray's tolerances are absolute, so all
 /// lengths are multiplied by one power of two that brings the radius of the bounded geometry into
 /// [128, 256); a scene whose middle is farther from the origin than its radius is moved there
 /// first, and so is a mesh whose vertices lie as far from the mesh's own origin.
+/// An environment becomes lights and a sky: see light_by_environment().
 /// Meshes are rescaled by powers of two so that their instances have a scale near 1. Exposure
 /// is folded into lights, ambience, emission and background. Material::color is multiplied into
 /// the texture (16 bit linear) where POV-Ray cannot layer it: metallic, emissive and translucent

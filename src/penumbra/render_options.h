@@ -22,8 +22,8 @@ struct Sampling {
 };
 
 /// How a scene is turned into a picture; the same for the tracer and for POV-Ray. What takes them
-/// throws Error (usage) when a side, `samples` or `max_depth` is less than 1, `samples` over 256, or
-/// `antialiasing` has a threshold below 0 or a depth that is not from 1 to 9.
+/// throws Error (usage) when a side, `samples` or `max_depth` is less than 1, `samples` over 256,
+/// or `antialiasing` has a threshold below 0 or a depth that is not from 1 to 9.
 struct RenderOptions {
     int width = 800, height = 600;                  ///< pixels
     int samples = 1;                                ///< see Sampling

@@ -285,11 +285,30 @@ struct Camera {
     double aspect = 0;  ///< width / height of the picture that its author had in mind; 0: any
 };
 
-/// An image of the whole sky in place of Scene::background: longitude runs to the right and
-/// latitude up, the middle of the image lies in -z, its top in +y (equirectangular).
+/// An image of all directions (equirectangular): longitude runs to the right and latitude up, the
+/// middle of the image lies in -z and its top in +y, both then turned by `rotation`.
 struct Sky {
     Index texture = no_index;
     double gain = 1;
+    Matrix rotation = {};  ///< from the image's directions to the world's: a rotation about 0
+};
+
+/// Of an Environment.
+inline constexpr int most_sources = 4096;
+
+/// What surrounds the scene and lights it: an image as that of a Sky. Both renderers see it as a
+/// Sky and as `sources` directional lights: see normalise().
+struct Environment {
+    std::string name = {};  ///< for messages and for what a scene's lights are called
+    Index texture = no_index;
+    /// From the image's directions to the world's: a rotation about 0.
+    Matrix rotation = {};
+    /// The image's middle lies where the active camera looks, but level with it, before `rotation`
+    /// is applied.
+    bool before_camera = false;
+    double intensity = 1;  ///< times the image, which is a radiance
+    int sources = 64;      ///< 0 to most_sources; 0: it is seen and gives no light
+    bool visible = true;   ///< replaces background and sky; else only what mirrors show of them
 };
 
 /// Everything in one picture but its size and quality.
@@ -304,7 +323,9 @@ struct Scene {
     std::vector<Camera> cameras = {};
     Index camera = no_index;  ///< the active one of `cameras`
     Color background = Color(0);
-    std::optional<Sky> sky = {};
+    std::optional<Sky> sky = {};         ///< in place of `background`
+    std::optional<Sky> mirror_sky = {};  ///< in place of both, for rays that were mirrored
+    std::optional<Environment> environment = {};
     Color ambient = Color(1);  ///< Ia, the global lighting constant
 };
 

@@ -190,7 +190,7 @@ void complete(Scene& scene, double aspect) {
     give_material(scene, scene.planes);
     give_camera(scene, aspect);
     assert(scene.camera < scene.cameras.size());
-    if (scene.lights.empty()) give_lights(scene);
+    if (scene.lights.empty() && !scene.environment) give_lights(scene);
 }
 
 }  // namespace penumbra

@@ -2,6 +2,7 @@
 #include "image/texels.h"
 #include "prepare/scale.h"
 #include "scene/check_options.h"
+#include "scene/looks.h"
 #include "scene/tolerances.h"
 #include "scene/transforms.h"
 
@@ -21,16 +22,6 @@ namespace penumbra {
 namespace {
 
 constexpr double most = 1e30;  // of what rescales a mesh: well within float32
-
-// Calls `work` with every material and with the second look of those that have one.
-template <class Work>
-void each_look(std::vector<Material>& materials, Work&& work) {
-    for (Material& m : materials) {
-        work(m);
-        if (m.blend)
-            for (Material& other : m.blend->other) work(other);
-    }
-}
 
 double extent_of(const Mesh& mesh) {
     float extent = 0;
@@ -95,7 +86,7 @@ void rescale_meshes(Scene& scene, double factor) {
 // length.
 void move_and_scale(Scene& scene, const Vec3& offset, double factor) {
     auto& [materials, textures, meshes, instances, spheres, planes, lights, cameras, camera,
-           background, sky, ambient] = scene;
+           background, sky, mirror_sky, environment, ambient] = scene;
     const auto place = [&](Vec3& p) { p = (p - offset) * factor; };
     for (Instance& i : instances)
         for (int column = 0; column < 3; ++column) i.transform[3][column] -= offset[column];
@@ -138,14 +129,22 @@ void expose(Scene& scene, double stops) {
     scale(scene.background);
     scale(scene.ambient);
     if (scene.sky) scene.sky->gain *= gain;
+    if (scene.mirror_sky) scene.mirror_sky->gain *= gain;
+}
+
+// OpenEXR's halves end at 65504; infinity would spread to every texel that is mixed with it.
+float nearest_half(double value) {
+    constexpr double largest = 65504;
+    if (std::isnan(value)) return 0;
+    return Imath::half(float(std::clamp(value, -largest, largest)));
 }
 
 // Makes the sky's gain part of its image: POV-Ray 3.7 has none. Floats are rounded to the halves
 // that it reads.
-void develop_sky(Scene& scene) {
-    if (!scene.sky) return;
-    const Texture& source = scene.textures[scene.sky->texture];
-    if (scene.sky->gain == 1 && source.raster.depth != Depth::f32) return;
+void develop(std::optional<Sky>& sky, std::vector<Texture>& textures) {
+    if (!sky) return;
+    const Texture& source = textures[sky->texture];
+    if (sky->gain == 1 && source.raster.depth != Depth::f32) return;
     const Raster& in = source.raster;
     const MemoryClaim claim(in.data.size() + in.texels() * 3 * sizeof(float),
                             "texture " + source.name);
@@ -157,13 +156,14 @@ void develop_sky(Scene& scene) {
     for (std::size_t t = 0; t < in.texels(); ++t) {
         const Color color = samples.color(t);
         for (int c = 0; c < 3; ++c) {
-            const float half = Imath::half(float(double(color[c]) * scene.sky->gain));
+            const float half = nearest_half(double(color[c]) * sky->gain);
             std::memcpy(out.raster.data.data() + sizeof(float) * (3 * t + std::size_t(c)), &half,
                         sizeof half);
         }
     }
-    scene.textures.push_back(std::move(out));
-    scene.sky = Sky{.texture = Index(scene.textures.size() - 1), .gain = 1};
+    textures.push_back(std::move(out));
+    sky->texture = Index(textures.size() - 1);
+    sky->gain = 1;
 }
 
 // The texture times `color`, in 16-bit linear: both renderers then read the same numbers.
@@ -249,10 +249,12 @@ NormalisedScene normalise(Scene scene, const RenderOptions& options) {
     result.offset = local_origin(box);
     center_meshes(scene, box.radius());
     result.factor = normalising_factor(box);
+    light_by_environment(scene);
     move_and_scale(scene, result.offset, result.factor);
     expose(scene, options.exposure);
     tint_textures(scene);
-    develop_sky(scene);
+    develop(scene.sky, scene.textures);
+    develop(scene.mirror_sky, scene.textures);
     result.scene = std::move(scene);
     return result;
 }

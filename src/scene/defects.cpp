@@ -175,6 +175,25 @@ struct Examiner {
                 who + " has a penumbra that is not positive");
     }
 
+    // An image of all directions.
+    void surrounding(Index texture, const Matrix& rotation, const std::string& who) {
+        require(texture < scene.textures.size(), who + " refers to a missing texture");
+        require(is_rotation(rotation), who + " is turned by what is no rotation");
+    }
+
+    void sky(const Sky& s, const std::string& who) {
+        surrounding(s.texture, s.rotation, who);
+        require(finite(s.gain), who + " has a number that is not finite");
+    }
+
+    void environment(const Environment& e) {
+        surrounding(e.texture, e.rotation, "the environment");
+        require(finite(e.intensity) && e.intensity >= 0,
+                "the environment has an intensity that is not 0 or more");
+        require(e.sources >= 0 && e.sources <= most_sources,
+                fmt::format("the environment has sources that are not 0 to {}", most_sources));
+    }
+
     void camera(const Camera& c) {
         const std::string who = fmt::format("camera '{}'", c.name);
         require(finite_vector(c.position) && finite_vector(c.direction) && finite_vector(c.up) &&
@@ -191,7 +210,7 @@ struct Examiner {
 // By name, so that a new member of Scene is an error here until it has been looked at.
 std::vector<std::string> defects(const Scene& scene) {
     const auto& [materials, textures, meshes, instances, spheres, planes, lights, cameras, camera,
-                 background, sky, ambient] = scene;
+                 background, sky, mirror_sky, environment, ambient] = scene;
     Examiner examine{scene};
     for (const Material& m : materials) examine.material(m);
     for (const Mesh& m : meshes) examine.mesh(m);
@@ -201,7 +220,9 @@ std::vector<std::string> defects(const Scene& scene) {
     for (const Plane& p : planes) examine.plane(p);
     for (const Light& l : lights) examine.light(l);
     for (const Camera& c : cameras) examine.camera(c);
-    examine.require(!sky || sky->texture < textures.size(), "the sky refers to a missing texture");
+    if (sky) examine.sky(*sky, "the sky");
+    if (mirror_sky) examine.sky(*mirror_sky, "the sky in mirrors");
+    if (environment) examine.environment(*environment);
     examine.require(camera < cameras.size(), "the scene has no camera");
     return std::move(examine.found);
 }

@@ -160,8 +160,13 @@ class Hasher {
         add_all(name, position, direction, up, projection, side, fov, extent, aspect);
     }
     void add(const Sky& sky) {
-        const auto& [texture, gain] = sky;
-        add_all(texture, gain);
+        const auto& [texture, gain, rotation] = sky;
+        add_all(texture, gain, rotation);
+    }
+    void add(const Environment& environment) {
+        const auto& [name, texture, rotation, before_camera, intensity, sources, visible] =
+            environment;
+        add_all(name, texture, rotation, before_camera, intensity, sources, visible);
     }
     void add(const Antialiasing& antialiasing) {
         const auto& [threshold, depth] = antialiasing;
@@ -200,11 +205,11 @@ PartFingerprint part(const char* name, const T&... values) {
 std::vector<PartFingerprint> fingerprints(const NormalisedScene& normalised) {
     const auto& [scene, factor, offset] = normalised;
     const auto& [materials, textures, meshes, instances, spheres, planes, lights, cameras, camera,
-                 background, sky, ambient] = scene;
+                 background, sky, mirror_sky, environment, ambient] = scene;
     return {part("camera", cameras, camera), part("lights", lights),
             part("materials or images", materials, textures),
             part("geometry", meshes, instances, spheres, planes, factor, offset),
-            part("background or ambient light", background, sky, ambient)};
+            part("background or ambient light", background, sky, mirror_sky, environment, ambient)};
 }
 
 std::uint64_t fingerprint(const NormalisedScene& scene, const RenderOptions& options) {

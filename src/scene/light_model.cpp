@@ -33,9 +33,18 @@ Vec3 fade_exponent(const Absorption& absorption) {
     return (Vec3(1) - Vec3(fade_color(absorption))) * (1 / double(float(absorption.distance)));
 }
 
-Vec2 sky_texcoord(const Vec3& d) {
+Vec2 sky_texcoord(const Sky& sky, const Vec3& direction) {
+    Vec3 d(0);
+    sky.rotation.transposed().multDirMatrix(direction, d);  // its inverse
     return {std::atan2(d.x, -d.z) / (2 * std::numbers::pi) + 0.5,
             std::asin(std::clamp(d.y, -1.0, 1.0)) / std::numbers::pi + 0.5};
+}
+
+Vec3 on_mirror_sky(const Vec3& origin, const Vec3& direction) {
+    const Vec3 from = origin / mirror_sky_radius;
+    const double along = from.dot(direction);
+    const double square = along * along + 1 - from.length2();
+    return from + direction * (std::sqrt(std::max(0.0, square)) - along);
 }
 
 }  // namespace penumbra

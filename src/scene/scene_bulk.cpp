@@ -17,9 +17,9 @@ Texture without_samples(const Texture& texture) {
 // error here until it is kept.
 Scene without_bulk(const Scene& scene) {
     const auto& [materials, textures, meshes, instances, spheres, planes, lights, cameras, camera,
-                 background, sky, ambient] = scene;
-    Scene small = {materials, {},      {},     instances,  spheres, planes,
-                   lights,    cameras, camera, background, sky,     ambient};
+                 background, sky, mirror_sky, environment, ambient] = scene;
+    Scene small = {materials, {},     {},         instances, spheres,    planes,      lights,
+                   cameras,   camera, background, sky,       mirror_sky, environment, ambient};
     for (const Texture& texture : textures) small.textures.push_back(without_samples(texture));
     return small;
 }

@@ -41,6 +41,32 @@ inline bool finite(const Matrix& transform) {
     return true;
 }
 
+/// Is it a rotation about the origin?
+inline bool is_rotation(const Matrix& m) {
+    constexpr double rounding = 1e-6;
+    bool unit = m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0 && m[3][3] == 1;
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) {
+            const double product = m[i][0] * m[k][0] + m[i][1] * m[k][1] + m[i][2] * m[k][2];
+            unit &= std::abs(product - (i == k ? 1 : 0)) < rounding && m[3][k] == 0;
+        }
+    return unit && m.determinant() > 0;
+}
+
+/// Right-handed rotation about axis 0, 1 or 2 by degrees; exact at quarter turns.
+inline Matrix rotation_about(int axis, double angle) {
+    const double turn = std::remainder(angle, 360.0);
+    double c = std::cos(radians(turn)), s = std::sin(radians(turn));
+    if (std::remainder(turn, 90.0) == 0) c = std::round(c), s = std::round(s);
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    Matrix m;
+    m[u][u] = c;
+    m[u][v] = s;
+    m[v][u] = -s;
+    m[v][v] = c;
+    return m;
+}
+
 /// The factor by which `transform` changes lengths, in the mean over all directions.
 inline double mean_scale(const Matrix& transform) {
     return std::cbrt(std::abs(transform.determinant()));

@@ -118,6 +118,25 @@ void add_from(const PreparedSource& source, const SurfacePoints& surfaces, const
     }
 }
 
+PENUMBRA_VECTORISED
+void add_along(const PreparedSource& source, const SurfacePoints& surfaces, const Block& block,
+               Vec3Array& radiance) {
+    const Vec3View normal(surfaces.normal), pigment(surfaces.pigment);
+    const double* diffuse = surfaces.diffuse.data();
+    double *red = radiance.axis[0].data(), *green = radiance.axis[1].data(),
+           *blue = radiance.axis[2].data();
+    const double ax = source.axis.x, ay = source.axis.y, az = source.axis.z;
+    const double r = source.color.x, g = source.color.y, b = source.color.z;
+    PENUMBRA_INDEPENDENT
+    for (std::size_t i = block.first; i < block.last; ++i) {
+        const double cosine = normal.x[i] * -ax + normal.y[i] * -ay + normal.z[i] * -az;
+        const double amount = diffuse[i] * (cosine < least_cosine ? 0.0 : cosine);
+        red[i] += r * (pigment.x[i] * amount);
+        green[i] += g * (pigment.y[i] * amount);
+        blue[i] += b * (pigment.z[i] * amount);
+    }
+}
+
 }  // namespace
 
 LightSamples::LightSamples(std::size_t capacity)
@@ -178,12 +197,16 @@ void add_diffuse(const Vec3& color, const Vec3Array& pigments, const std::vector
 
 void add_open_matte(const SourceGroup& light, const SurfacePoints& surfaces, const Block& block,
                     Vec3Array& radiance) {
-    for (const PreparedSource& source : light.sources) add_from(source, surfaces, block, radiance);
+    for (const PreparedSource& source : light.sources)
+        if (source.type == Light::Type::directional)
+            add_along(source, surfaces, block, radiance);
+        else
+            add_from(source, surfaces, block, radiance);
 }
 
 bool plain(const SourceGroup& light) {
     const PreparedSource& one = light.sources.front();
-    return one.type == Light::Type::point && !one.fades && brightest(one) >= least_light;
+    return one.type != Light::Type::spot && !one.fades && brightest(one) >= least_light;
 }
 
 }  // namespace penumbra

@@ -48,7 +48,7 @@ void add_diffuse(const Vec3& color, const Vec3Array& pigments, const std::vector
 void add_open_matte(const SourceGroup& light, const SurfacePoints& surfaces, const Block& block,
                     Vec3Array& radiance);
 
-/// Is it made of point sources that neither fade nor are too weak to count?
+/// Is it made of points or parallel light that neither fade nor are too weak to count?
 bool plain(const SourceGroup& light);
 
 }  // namespace penumbra

@@ -17,7 +17,7 @@ struct Path {
     std::uint32_t pixel = 0;
     int level = 1;  ///< ray segments so far, this one included; going straight through adds none
     MediumStack inside = {};
-    bool mirrored = false;  ///< at least once: no longer what POV-Ray calls an image ray
+    bool mirrored = false;  ///< at least once: it sees what stands in mirrors only
 };
 
 /// Rays with their paths.

@@ -2,6 +2,7 @@
 #include "tracer/tiles.h"
 
 #include "base/isolated.h"
+#include "scene/mirror_sky.h"
 #include "scene/view.h"
 #include "tracer/back_light.h"
 #include "tracer/direct_light.h"
@@ -76,6 +77,7 @@ struct Job {
     const std::vector<PixelSample> samples;
     const MediumStack inside;  // where the eye is
     const std::stop_token& stop;
+    const Vec3 sky_center = mirror_sky_center(prepared.scene);
 };
 
 // The ray through a point of the picture, in pixels from its upper left corner.
@@ -120,23 +122,33 @@ void find_hits(const PreparedScene& prepared, bool coherent, Workspace& work) {
     prepared.facets->closest(work.current.rays, work.hits, coherent);
 }
 
+Vec3 light_of(const PreparedScene& prepared, const Sky& sky, const Vec3& direction) {
+    const Vec2 uv = sky_texcoord(sky, direction);
+    return Vec3(sample(prepared.textures[sky.texture], uv.x, uv.y)) * sky.gain;
+}
+
 // What a ray that hits nothing sees.
-Vec3 sky_light(const PreparedScene& prepared, const Vec3& direction) {
-    if (!prepared.scene.sky) return Vec3(prepared.scene.background);
-    const Vec2 uv = sky_texcoord(direction);
-    return Vec3(sample(prepared.textures[prepared.scene.sky->texture], uv.x, uv.y)) *
-           prepared.scene.sky->gain;
+Vec3 sky_light(const Job& job, const Rays& rays, std::size_t i, bool mirrored) {
+    const PreparedScene& prepared = job.prepared;
+    const Scene& scene = prepared.scene;
+    const Vec3 direction = rays.direction[i];
+    if (mirrored && scene.mirror_sky)
+        return light_of(prepared, *scene.mirror_sky,
+                        on_mirror_sky(rays.origin[i] - job.sky_center, direction));
+    if (scene.sky) return light_of(prepared, *scene.sky, direction);
+    return Vec3(scene.background);
 }
 
 // Lists the rays that hit something. What mirrors scatter is brought together again, so that blocks
 // of surface points stay small.
-void order_hits(const PreparedScene& prepared, bool coherent, Workspace& work) {
+void order_hits(const Job& job, bool coherent, Workspace& work) {
+    const PreparedScene& prepared = job.prepared;
     const Generation& rays = work.current;
     work.order.clear();
     for (std::size_t i = 0; i < rays.rays.count; ++i) {
         if (work.hits.object[i] == no_index) {
-            work.pixels[rays.paths[i].pixel] +=
-                rays.paths[i].weight * sky_light(prepared, rays.rays.direction[i]);
+            const Path& path = rays.paths[i];
+            work.pixels[path.pixel] += path.weight * sky_light(job, rays.rays, i, path.mirrored);
             continue;
         }
         std::uint64_t key = 0;
@@ -185,7 +197,7 @@ void trace_generations(const Job& job, Workspace& work) {
     bool coherent = true;
     while (work.current.rays.count > 0) {
         find_hits(job.prepared, coherent, work);
-        order_hits(job.prepared, coherent, work);
+        order_hits(job, coherent, work);
         find_surface_points(job.prepared, work);
         work.radiance.clear(work.surfaces.count);
         add_direct_light(job.prepared, work.surfaces, work.light, work.radiance);

@@ -189,12 +189,34 @@ TEST_CASE("info says what a scene holds, as text and as JSON") {
     for (const char* const key : {"spheres", "planes", "materials", "textures", "animations"})
         CHECK(result[key].is_number_unsigned());
     CHECK(result["extensions"] == json::array());
+    CHECK(result["environment"] == nullptr);
     CHECK(result["losses"] == json::array());
 
     const Ended text = run(folder.path, {"info", "a.obj"});
     CHECK(text.out.find("bounds     (0, 0, 0) to (2, 3, 4)\nfacets     2\n") != std::string::npos);
     CHECK(text.out.find("Everything is rendered and exported exactly.\n") != std::string::npos);
     CHECK(entries(folder.path) == 1);
+}
+
+TEST_CASE("info says what surrounds a scene, and does not count it among the lights") {
+    const TempDir folder;
+    test::write(folder / "a.obj", cube_corner);
+    const json result = json::parse(run(folder.path, {"info", "a.obj", "--json", "--environment",
+                                                      "night", "--set", "environment.sources=16"})
+                                        .out);
+    CHECK(result["lights"] == 0);
+    CHECK(result["environment"] ==
+          json{{"name", "night"}, {"sources", 16}, {"intensity", 1}, {"visible", true}});
+    const Ended text = run(folder.path, {"info", "a.obj", "--environment", "studio", "--set",
+                                         "environment.visible=false"});
+    CHECK(text.out.find("\nenvironment studio: 64 sources, seen in mirrors only\n") !=
+          std::string::npos);
+    CHECK(text.out.find("Everything is rendered and exported exactly.\n") != std::string::npos);
+    CHECK(json::parse(run(folder.path, {"info", "a.obj", "--json", "--environment", "0.5,1,2"})
+                          .out)["environment"]["name"] == "uniform");
+    CHECK(json::parse(run(folder.path, {"info", "a.obj", "--json", "--environment", "night",
+                                        "--environment", "none"})
+                          .out)["environment"] == nullptr);
 }
 
 TEST_CASE("compare exits with 0, 1 or 6") {

@@ -91,6 +91,9 @@ TEST_CASE("a wrong command line exits with 2 and one sentence") {
           "penumbra: error: --normal-maps: 'bump' is not bake, drop or pixel\n");
     CHECK(error_of({"export", "a.obj", "--pov-style", "inc"}) ==
           "penumbra: error: --pov-style: 'inc' is not standalone or include\n");
+    CHECK(error_of({"render", "a.obj", "--environment", "1,2"}) ==
+          "penumbra: error: --environment: '1,2' is not R,G,B in linear numbers of 0 or more, such "
+          "as 0.1,0.1,0.2\n");
     CHECK(error_of({"render", "a.obj", "--background", "1,nan,0"}) ==
           "penumbra: error: --background: '1,nan,0' is not R,G,B in linear numbers of 0 or more, "
           "such as 0.1,0.1,0.2\n");

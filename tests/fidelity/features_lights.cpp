@@ -35,6 +35,25 @@ const std::string spot = "[[light]]\ntype = \"spot\"\nposition = [2, 4, 2.5]\n"
 const std::string sun = "[[light]]\ntype = \"directional\"\ndirection = [-0.5, -1, -0.7]\n"
                         "intensity = 0.8\n";
 
+// With a mirror beside the balls, and the background where the environment is not seen.
+std::vector<Feature> environments() {
+    const std::string mirror = "[[sphere]]\ncenter = [-1.2, 0.5, 0.6]\nradius = 0.5\n"
+                               "material = \"mirror\"\n[material.mirror]\nreflection = 0.9\n";
+    const auto around = [&](const std::string& name, const std::string& keys) {
+        return staged(
+            "environment, " + name,
+            {.lights = "[lighting]\nambient = 0\n[environment]\n" + keys, .rest = balls + mirror});
+    };
+    std::vector<Feature> all = {
+        around("studio", "name = \"studio\"\n"),
+        around("sunset, turned, 256 sources",
+               "name = \"sunset\"\nrotate = -75\nsources = 256\nintensity = 0.8\n"),
+        around("night, in mirrors only", "name = \"night\"\nsources = 16\nvisible = false\n"),
+        around("image, EXR", "image = \"hall.exr\"\nrotate = 40\n")};
+    all.back().files["hall.exr"] = picture_file(".exr");
+    return all;
+}
+
 std::vector<Feature> gltf_lights() {
     const json above = {{"translation", {1.5, 3.2, 2.1}}, {"rotation", {-0.4, 0.25, 0.1, 0.87}}};
     std::vector<Feature> all;
@@ -72,6 +91,7 @@ std::vector<Feature> light_features() {
         penumbra("grid", lamp, "0.5, pattern = \"grid\", count = [5, 3], target = [0, 0.5, 0]"),
         penumbra("grid of a spot light", spot, "0.3, pattern = \"grid\", count = 4"),
         penumbra("sphere of a directional light", sun, "0.12, pattern = \"sphere\", count = 12")};
+    for (Feature& feature : environments()) all.push_back(std::move(feature));
     for (Feature& feature : gltf_lights()) all.push_back(std::move(feature));
     return all;
 }

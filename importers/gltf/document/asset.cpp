@@ -35,6 +35,7 @@ const std::set<std::string> supported = {
     "KHR_meshopt_compression",
     "EXT_meshopt_compression",
     "EXT_mesh_gpu_instancing",
+    "EXT_lights_image_based",
     "EXT_texture_webp",
     "EXT_texture_avif",
     "KHR_animation_pointer",

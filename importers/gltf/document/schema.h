@@ -92,6 +92,8 @@ inline constexpr std::array schema = {
     numbers("/nodes/*/rotation", 4),
     numbers("/nodes/*/scale", 3),
     numbers("/nodes/*/weights"),
+    reference("/scenes/*/extensions/EXT_lights_image_based/light!",
+              "/extensions/EXT_lights_image_based/lights"),
     reference("/nodes/*/extensions/KHR_lights_punctual/light!",
               "/extensions/KHR_lights_punctual/lights"),
     flag("/nodes/*/extensions/KHR_node_visibility/visible"),
@@ -222,6 +224,12 @@ inline constexpr std::array schema = {
     whole("/animations/*/channels!/*/sampler!", 0, largest_int),
     reference("/animations/*/channels/*/target!/node", "/nodes"),
     text("/animations/*/channels/*/target/path!"),
+
+    object("/extensions/EXT_lights_image_based/lights/*"),
+    text("/extensions/EXT_lights_image_based/lights/*/name"),
+    numbers("/extensions/EXT_lights_image_based/lights/*/rotation", 4),
+    number("/extensions/EXT_lights_image_based/lights/*/intensity", 0),
+    reference("/extensions/EXT_lights_image_based/lights/*/specularImages!/*/*", "/images"),
 
     object("/extensions/KHR_lights_punctual/lights/*"),
     text("/extensions/KHR_lights_punctual/lights/*/name"),

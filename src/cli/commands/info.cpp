@@ -52,6 +52,15 @@ Json bounds_json(const Bounds& box) {
     return {{"min", vector_json(box.min)}, {"max", vector_json(box.max)}};
 }
 
+Json environment_json(const Scene& scene) {
+    if (!scene.environment) return nullptr;
+    const Environment& e = *scene.environment;
+    return {{"name", e.name},
+            {"sources", e.sources},
+            {"intensity", e.intensity},
+            {"visible", e.visible}};
+}
+
 Json document(const Arguments& arguments, const Report& report) {
     const Scene& scene = report.imported.scene;
     Json inputs = Json::array();
@@ -75,6 +84,7 @@ Json document(const Arguments& arguments, const Report& report) {
             {"materials", scene.materials.size()},
             {"textures", scene.textures.size()},
             {"lights", scene.lights.size()},
+            {"environment", environment_json(scene)},
             {"cameras", scene.cameras.size()},
             {"exposure", report.imported.render.exposure},
             {"animations", report.totals.animations},
@@ -121,6 +131,15 @@ std::string light_names(const Scene& scene) {
     return text;
 }
 
+std::string environment_line(const Scene& scene) {
+    if (!scene.environment) return "";
+    const Environment& e = *scene.environment;
+    std::string text = fmt::format("environment {}: {}", one_line(e.name),
+                                   counted(std::size_t(e.sources), "source"));
+    if (e.intensity != 1) text += fmt::format(", intensity {:g}", e.intensity);
+    return text + (e.visible ? "\n" : ", seen in mirrors only\n");
+}
+
 std::string pattern_names(const Scene& scene) {
     std::array<std::size_t, std::variant_size_v<Pattern>> kinds{};
     for (const Material& material : scene.materials) ++kinds[material.pattern.index()];
@@ -150,6 +169,7 @@ std::string contents(const Report& report) {
                        names_of(scene.materials) + pattern_names(scene));
     text += count_line("textures", scene.textures.size(), names_of(scene.textures));
     text += count_line("lights", scene.lights.size(), light_names(scene));
+    text += environment_line(scene);
     text += count_line("cameras", scene.cameras.size(), names_of(scene.cameras));
     if (report.imported.render.exposure != 0)
         text += fmt::format("{:<11}{:+g} EV{}\n", "exposure", report.imported.render.exposure,

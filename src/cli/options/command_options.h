@@ -216,6 +216,10 @@ class CommandOptions : public OptionReader {
                     const Color c = read_color("--background", text);
                     return fmt::format("render.background=[{:.9},{:.9},{:.9}]", c.x, c.y, c.z);
                 });
+        setting("--environment", "NAME|FILE|R,G,B",
+                "Light from all around: studio, overcast, sunset, night, an equirectangular "
+                "image, or a colour; none for none",
+                [](const std::string& text) { return environment_setting(text); });
         value("--penumbra", "DELTA", "Extent of every light in scene units; 0 for sharp shadows",
               [this](const std::string& text) {
                   arguments_.load.penumbra = read_number("--penumbra", text, not_negative);

@@ -128,6 +128,15 @@ Color read_color(const std::string& option, const std::string& text) {
     return color;
 }
 
+std::string environment_setting(const std::string& text) {
+    if (text.starts_with('#')) return "environment.color=" + toml_string(text);
+    if (text.find_first_of("./") != text.npos && text.find(',') == text.npos)
+        return "environment.image=" + toml_string(text);
+    if (text.find(',') == text.npos) return "environment.name=" + toml_string(text);
+    const Color c = read_color("--environment", text);
+    return fmt::format("environment.color=[{:.9},{:.9},{:.9}]", c.x, c.y, c.z);
+}
+
 PixelBox read_box(const std::string& option, const std::string& text) {
     std::array<int, 4> sides{};
     std::string_view rest = text;

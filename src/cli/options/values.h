@@ -33,6 +33,9 @@ std::array<int, 2> read_size(const std::string& option, std::string_view text);
 /// "0.1,0.2,0.3", linear and not negative.
 Color read_color(const std::string& option, const std::string& text);
 
+/// "studio", "hall.hdr" or "0.5,0.5,0.6" as a setting of [environment].
+std::string environment_setting(const std::string& text);
+
 /// "10,20,110,220": x0 < x1 and y0 < y1.
 PixelBox read_box(const std::string& option, const std::string& text);
 
