@@ -61,6 +61,9 @@ void note_losses(Output& out, const Material& m, const SpecularLobe& lobe) {
                       "highlight and mirror become the same all over it");
     note.approximated(!grey(lobe.reflection), "the mirror becomes grey");
     note.approximated(m.fresnel && mirror, "the mirror is no stronger in grazing light");
+    note.approximated(blurs(m), "the reflection is sharp");
+    note.approximated(takes_reflected(m) && mirror, "what it reflects is taken from nothing");
+    note.dropped(m.coat.has_value(), "the clear coat is left out");
     note.approximated(m.metallic > 0 && mirror, "the mirror is not tinted by the metal");
     note.approximated(m.metallic > 0 && m.metallic < 1,
                       "highlights are those of a metal or of plastic");

@@ -22,7 +22,7 @@ namespace penumbra {
 namespace {
 
 Imported read(std::string text, const std::string& name, const ModelFolders& folders,
-              Surroundings surroundings) {
+              Illumination illumination) {
     Imported result;
     obj::Tally tally = {.file = name};
     std::vector<obj::Piece> pieces = obj::clean_obj(std::move(text), name, tally);
@@ -35,7 +35,7 @@ Imported read(std::string text, const std::string& name, const ModelFolders& fol
 
     obj::resolve_normals(model, tally);
     const auto entries = obj::read_libraries(libraries, name, folders, result);
-    obj::build_materials(model.materials, name, entries, folders, surroundings, result);
+    obj::build_materials(model.materials, name, entries, folders, illumination, result);
     obj::build_meshes(std::move(model), result.scene, tally);
     std::ranges::copy(tally.losses.losses(), std::back_inserter(result.losses));
     result.models.push_back({.file = name, .format = "OBJ"});
@@ -52,14 +52,14 @@ std::string text_of(std::span<const std::byte> bytes, const std::string& name) {
 
 Imported read_obj(const std::filesystem::path& file, const ModelOptions& options) {
     Imported imported =
-        read(read_text(file), file.string(), folders_of(file, options), options.surroundings);
+        read(read_text(file), file.string(), folders_of(file, options), options.illumination);
     imported.files.push_back(file);
     return imported;
 }
 
 Imported read_obj(std::span<const std::byte> bytes, const std::string& name,
                   const ModelOptions& options) {
-    return read(text_of(bytes, name), name, folders_in_memory(name, options), options.surroundings);
+    return read(text_of(bytes, name), name, folders_in_memory(name, options), options.illumination);
 }
 
 }  // namespace penumbra

@@ -162,8 +162,8 @@ LobeImages bake_roughness(const LobeMaps& maps) {
     const double strength = tinted ? dielectric.strength() : most;
     LobeImages images = {.level = levels.image(maps.roughness)};
     for (int i = 0; i < levels.count; ++i) {
-        SpecularLobe lobe = full_lobe(levels.roughness(i), 1 / strength, most, maps.surroundings);
-        if (maps.surroundings == Surroundings::lamps) {
+        SpecularLobe lobe = full_lobe(levels.roughness(i), 1 / strength, most, maps.illumination);
+        if (maps.illumination == Illumination::lamps) {
             lobe.specular *= float(strength);
             lobe.reflection *= tinted ? Color(float(strength)) : f0;
         }
@@ -213,11 +213,11 @@ LobeImages bake_specular_lobes(const LobeMaps& maps) {
     const auto [median, most] = median_and_most(images.reflected);
     const double limit = 1 / std::max(median, 0.02);
     for (int i = 0; i < levels.count; ++i)
-        images.lobes.push_back(full_lobe(levels.roughness(i), limit, most, maps.surroundings));
+        images.lobes.push_back(full_lobe(levels.roughness(i), limit, most, maps.illumination));
 
     images.scattered = filled(size, [&](int x, int y) {
         const RoughnessLobe lobe =
-            lobe_of_roughness(double(roughness.value(x, y)), maps.surroundings);
+            lobe_of_roughness(double(roughness.value(x, y)), maps.illumination);
         const double m = std::clamp(double(metallic.value(x, y)), 0.0, 1.0);
         const DielectricReflectance dielectric =
             dielectric_reflectance(specular.color(x, y), maps.white);
@@ -233,14 +233,14 @@ LobeImages bake_specular_lobes(const LobeMaps& maps) {
 }
 
 void lay_specular_lobes(Material& material, SpecularLobes specular_lobes, const ImageMap& scattered,
-                        const DielectricReflectance& dielectric, Surroundings surroundings) {
+                        const DielectricReflectance& dielectric, Illumination illumination) {
     material.specular_lobes = std::move(specular_lobes);
     material.specular = 0;
     material.reflection = Color(0);
     material.metallic = 0;
     material.diffuse = 1 - std::min(float(largest(dielectric.f0)), 1.0F);
     if (scattered.texture == no_index) {
-        const bool surrounded = surroundings == Surroundings::environment;
+        const bool surrounded = illumination == Illumination::environment;
         material.conserve_energy = surrounded;
         if (dielectric.plain() && !surrounded) return;
         material.specular_color = surrounded ? dielectric.f0 : dielectric.tint();

@@ -20,7 +20,7 @@ struct LobeMaps {
     /// The reflectance that it would have if it were white; none: the largest channel of
     /// `specular`.
     std::optional<float> white = {};
-    Surroundings surroundings = Surroundings::lamps;
+    Illumination illumination = Illumination::lamps;
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     bool bilinear = true;
     std::string place = {};  ///< for messages
@@ -52,6 +52,6 @@ LobeImages bake_specular_lobes(const LobeMaps& maps);
 /// the place of the base colour, if it has a texture; else nothing is metal and `dielectric`
 /// is the reflectance.
 void lay_specular_lobes(Material& material, SpecularLobes specular_lobes, const ImageMap& scattered,
-                        const DielectricReflectance& dielectric, Surroundings surroundings);
+                        const DielectricReflectance& dielectric, Illumination illumination);
 
 }  // namespace penumbra

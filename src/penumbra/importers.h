@@ -57,7 +57,7 @@ struct ModelOptions {
     std::optional<double> time = {};
     /// Where the light will come from: surfaces of metalness and roughness are imitated in another
     /// way by few lamps than by an environment.
-    Surroundings surroundings = Surroundings::lamps;
+    Illumination illumination = Illumination::lamps;
     /// Folders below which a model may name files, besides its own. A model in memory has none of
     /// its own.
     std::vector<std::filesystem::path> allowed_paths = {};

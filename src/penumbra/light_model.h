@@ -101,13 +101,13 @@ struct View {
 View view_of(const Camera& camera, int width, int height);
 
 /// Where the light of a scene comes from: a few lamps in the dark, or all around.
-enum class Surroundings { lamps, environment };
+enum class Illumination { lamps, environment };
 
 /// Phong terms that imitate a glTF metallic-roughness surface; material.color is its base colour
 /// and `f0` the dielectric reflectance at normal incidence (0.04 for ior 1.5). An approximation: a
 /// least squares fit to GGX. Sets diffuse, specular, shininess, metallic, reflection, roughness,
 /// conserve_energy and specular_color.
 void set_metallic_roughness(Material& material, float metallic, float roughness, float f0 = 0.04F,
-                            Surroundings surroundings = Surroundings::lamps);
+                            Illumination illumination = Illumination::lamps);
 
 }  // namespace penumbra

@@ -37,7 +37,7 @@ namespace penumbra {
 // same gold as a metal, by an index of 0 (infinite) and by specular-glossiness is the same surface.
 
 // All of that is for a few lamps in the dark: then the even part of a metal stands for surroundings
-// that are not there. Where light comes from all around (Surroundings::environment) nothing has to
+// that are not there. Where light comes from all around (Illumination::environment) nothing has to
 // stand for it, and what is reflected, all of it, is split over three terms of which each has the
 // albedo 1 by itself:
 //
@@ -61,7 +61,7 @@ namespace {
 
 constexpr double sharpest = 0.1;  // of mirrors that are blurred: below nobody sees it
 
-RoughnessLobe lobe_of_surroundings(double r, double a) {
+RoughnessLobe lobe_of_illumination(double r, double a) {
     const double lobe = std::min(0.2, 4 * r * r), even = std::min(1.0, 1.3 * r * r);
     const double highlight = std::min(lobe, 1 - even), sharp = 1 - even - highlight;
     const double exponent = std::clamp(1.25 / (a * a) - 1, 1.0, 10000.0);
@@ -70,31 +70,31 @@ RoughnessLobe lobe_of_surroundings(double r, double a) {
             .sharp = sharp < 0.02 ? 0 : sharp,
             .roughness = r < sharpest ? 0 : r,
             .even = even,
-            .surroundings = Surroundings::environment};
+            .illumination = Illumination::environment};
 }
 
 }  // namespace
 
-RoughnessLobe lobe_of_roughness(double roughness, Surroundings surroundings) {
+RoughnessLobe lobe_of_roughness(double roughness, Illumination illumination) {
     const double r = std::clamp(roughness, 0.0, 1.0);
     const double a = std::pow(std::max(r, 0.045), 2);
-    if (surroundings == Surroundings::environment) return lobe_of_surroundings(r, a);
+    if (illumination == Illumination::environment) return lobe_of_illumination(r, a);
     return {.highlight = 1 / (4 * a * a),
             .exponent = std::clamp(0.676 / (a * a) - 1.17, 1.0, 10000.0),
             .sharp = std::pow(std::max(0.0, 1 - r / 0.6), 2)};
 }
 
 double scattered(const RoughnessLobe& shape, double metallic, double f0, double highlight) {
-    if (shape.surroundings == Surroundings::environment)
+    if (shape.illumination == Illumination::environment)
         return (1 - metallic) * (1 - f0) + metallic * shape.even;
     const double lobe = 2 * highlight / (shape.exponent + 1), blurred = 1 - shape.sharp;
     return (1 - metallic) * (1 - f0) + blurred * std::max(0.0, metallic * blurred - lobe);
 }
 
 SpecularLobe full_lobe(double roughness, double limit, double strongest,
-                       Surroundings surroundings) {
-    const RoughnessLobe shape = lobe_of_roughness(roughness, surroundings);
-    if (surroundings == Surroundings::environment)
+                       Illumination illumination) {
+    const RoughnessLobe shape = lobe_of_roughness(roughness, illumination);
+    if (illumination == Illumination::environment)
         return {.specular = float(shape.highlight),
                 .shininess = float(shape.exponent),
                 .reflection = Color(float(shape.sharp)),
@@ -107,7 +107,7 @@ SpecularLobe full_lobe(double roughness, double limit, double strongest,
 
 Coat clear_coat(double part, double roughness) {
     constexpr double f0 = 0.04;
-    const RoughnessLobe shape = lobe_of_roughness(roughness, Surroundings::environment);
+    const RoughnessLobe shape = lobe_of_roughness(roughness, Illumination::environment);
     return {.specular = float(part * f0 * shape.highlight),
             .shininess = float(shape.exponent),
             .reflection = float(part * f0 * shape.sharp),
@@ -116,7 +116,7 @@ Coat clear_coat(double part, double roughness) {
 }
 
 void add_coat(SpecularLobe& lobe, double f0, double roughness) {
-    const RoughnessLobe shape = lobe_of_roughness(roughness, Surroundings::lamps);
+    const RoughnessLobe shape = lobe_of_roughness(roughness, Illumination::lamps);
     if (f0 * shape.sharp >= faintest) lobe.reflection += Color(float(f0 * shape.sharp));
     const float highlight = float(std::min(f0 * shape.highlight, 1.0));
     if (highlight <= lobe.specular) return;
@@ -134,7 +134,7 @@ double largest(const Color& c) { return double(std::max({c.x, c.y, c.z})); }
 
 // What the lobe of a metal leaves to be scattered, in its tint.
 double beside_lobe(const RoughnessLobe& shape, double highlight) {
-    if (shape.surroundings == Surroundings::environment) return shape.even;
+    if (shape.illumination == Illumination::environment) return shape.even;
     const double blurred = 1 - shape.sharp;
     return blurred * std::max(0.0, blurred - 2 * highlight / (shape.exponent + 1));
 }
@@ -190,7 +190,7 @@ void set_scattered(Material& material, const RoughnessLobe& shape, double metall
 // In light from all around.
 void set_surrounded(Material& material, double metallic, double roughness,
                     const DielectricReflectance& dielectric) {
-    const RoughnessLobe shape = lobe_of_roughness(roughness, Surroundings::environment);
+    const RoughnessLobe shape = lobe_of_roughness(roughness, Illumination::environment);
     const Color base = material.color;
     material.specular = float(shape.highlight);
     material.shininess = float(shape.exponent);
@@ -207,14 +207,14 @@ void set_surrounded(Material& material, double metallic, double roughness,
 }  // namespace
 
 void set_metallic_roughness(Material& material, float metallic, float roughness,
-                            const DielectricReflectance& dielectric, Surroundings surroundings) {
+                            const DielectricReflectance& dielectric, Illumination illumination) {
     const double m = std::clamp(double(metallic), 0.0, 1.0);
-    if (surroundings == Surroundings::environment)
+    if (illumination == Illumination::environment)
         return set_surrounded(material, m, double(roughness), dielectric);
     if (dielectric.plain() || m == 1)
         return set_metallic_roughness(material, metallic, roughness, float(largest(dielectric.f0)),
-                                      surroundings);
-    const RoughnessLobe shape = lobe_of_roughness(double(roughness), surroundings);
+                                      illumination);
+    const RoughnessLobe shape = lobe_of_roughness(double(roughness), illumination);
     const double strength = dielectric.strength() + m * (1 - dielectric.strength());
     const Color reflected = dielectric.f0 + (material.color - dielectric.f0) * float(m);
     const double highlight = std::min(strength * shape.highlight, 1.0);
@@ -229,13 +229,13 @@ void set_metallic_roughness(Material& material, float metallic, float roughness,
 }
 
 void set_metallic_roughness(Material& material, float metallic, float roughness, float f0,
-                            Surroundings surroundings) {
+                            Illumination illumination) {
     const double m = std::clamp(double(metallic), 0.0, 1.0);
     const double dielectric = std::clamp(double(f0), 0.0, 1.0);
-    if (surroundings == Surroundings::environment)
+    if (illumination == Illumination::environment)
         return set_surrounded(material, m, double(roughness),
                               dielectric_reflectance(Color(float(dielectric))));
-    const RoughnessLobe shape = lobe_of_roughness(double(roughness), surroundings);
+    const RoughnessLobe shape = lobe_of_roughness(double(roughness), illumination);
 
     // F over the tint, for one channel of the base colour.
     const auto untinted = [&](double base) {

@@ -15,9 +15,9 @@ struct RoughnessLobe {
     double sharp = 0;      ///< the part of what is reflected that is seen as a mirror image
     double roughness = 0;  ///< of that image: see Material::roughness
     double even = 0;       ///< the part that a metal scatters evenly, where light is all around
-    Surroundings surroundings = Surroundings::lamps;
+    Illumination illumination = Illumination::lamps;
 };
-RoughnessLobe lobe_of_roughness(double roughness, Surroundings surroundings);
+RoughnessLobe lobe_of_roughness(double roughness, Illumination illumination);
 
 /// What a surface that is not metal reflects at normal incidence.
 struct DielectricReflectance {
@@ -42,14 +42,15 @@ Color scattered_color(const RoughnessLobe& shape, const Color& base, double meta
 /// As in light_model.h, for any reflectance. One that is part of a metal adds to material.color,
 /// which must be all of the base colour then.
 void set_metallic_roughness(Material& material, float metallic, float roughness,
-                            const DielectricReflectance& dielectric, Surroundings surroundings);
+                            const DielectricReflectance& dielectric,
+                            Illumination illumination = Illumination::lamps);
 
 /// K_D: how much of the base colour is scattered evenly. `highlight` is K_S over the base colour.
 double scattered(const RoughnessLobe& shape, double metallic, double f0, double highlight);
 
 /// Highlight and mirror of a surface that reflects all, to be tinted by what it does reflect, which
 /// is at most `strongest`. The highlight is at most `limit`.
-SpecularLobe full_lobe(double roughness, double limit, double strongest, Surroundings surroundings);
+SpecularLobe full_lobe(double roughness, double limit, double strongest, Illumination illumination);
 
 /// Lays a clear coat of the reflectance `f0` over `lobe`: its mirror image is added, of the two
 /// highlights the stronger one stays.

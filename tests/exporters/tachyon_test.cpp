@@ -200,7 +200,7 @@ TEST_CASE("a Tachyon scene, says what Tachyon lacks") {
     CHECK(has(written.text, "ANTIALIASING 9 "));
 
     options.antialiasing = Antialiasing{.depth = 2};
-    const Written adaptive(scene, options);
+    const Written adaptive(beyond_tachyon(), options);
     const Loss loss = {Loss::approximated, "antialias",
                        "every pixel has as many rays, at random in it"};
     CHECK(std::ranges::count(adaptive.exported.losses, loss) == 1);

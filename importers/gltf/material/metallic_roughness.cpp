@@ -177,7 +177,7 @@ void Plan::make_constant() {
                                            "image: the surface is transparent");
     }
     set_metallic_roughness(read.material, constant_of(maps.metallic)->x,
-                           constant_of(maps.roughness)->x, dielectric, maps.surroundings);
+                           constant_of(maps.roughness)->x, dielectric, maps.illumination);
     read.lay_base();
 }
 
@@ -235,7 +235,7 @@ void Plan::bake() {
     lay_specular_lobes(
         read.material, std::move(specular_lobes), scattered,
         reflectance_of(maps).value_or(dielectric_reflectance(maps.specular.factor, maps.white)),
-        maps.surroundings);
+        maps.illumination);
     if (read.material.specular_lobes && read.material.specular_lobes->level.texture != no_index)
         read.note_set(level, [](Material& m) -> ImageMap& { return m.specular_lobes->level; });
     if (scattered.texture == no_index) read.lay_base();
@@ -294,7 +294,7 @@ double MaterialReader::mean_roughness() {
 }
 
 void MaterialReader::read_metallic_roughness() {
-    Plan plan = {.read = *this, .maps = {.surroundings = reader.options.surroundings}};
+    Plan plan = {.read = *this, .maps = {.illumination = reader.options.illumination}};
     if (extension(specular_glossiness) != nullptr)
         plan.glossiness();
     else

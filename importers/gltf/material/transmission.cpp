@@ -46,10 +46,10 @@ void MaterialReader::read_volume() {
         const double f0 = std::pow((n - 1) / (n + 1), 2);
         material.ior = float(n);
         material.fresnel = true;
-        const Surroundings surroundings = reader.options.surroundings;
-        const Color mirror = full_lobe(mean_roughness(), 1, f0, surroundings).reflection;
+        const Illumination illumination = reader.options.illumination;
+        const Color mirror = full_lobe(mean_roughness(), 1, f0, illumination).reflection;
         const DielectricReflectance reflects = dielectric();
-        if (surroundings == Surroundings::environment) {
+        if (illumination == Illumination::environment) {
             // Fresnel's term takes the place of a tint that rises in grazing light.
             material.specular *= float(reflects.strength());
             if (reflects.plain())
@@ -128,7 +128,7 @@ void MaterialReader::read_clearcoat() {
     const double roughness = number(*given, "clearcoatRoughnessFactor", 0) *
                              double(mean_of(*given, "clearcoatRoughnessTexture", false).y);
     if (coat == 0) return;
-    if (reader.options.surroundings == Surroundings::environment) {
+    if (reader.options.illumination == Illumination::environment) {
         material.coat = clear_coat(coat, roughness);
         return;
     }

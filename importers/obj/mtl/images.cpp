@@ -185,7 +185,7 @@ void MaterialMaker::flatten(const std::optional<MapImage>& map, TexelSource& sou
 bool MaterialMaker::lobe_images(MetallicRoughness& surface) {
     const std::optional<MapImage> metal = image("map_pm"), rough = image("map_pr");
     if (!metal && !rough) return false;
-    LobeMaps maps{.surroundings = surroundings};
+    LobeMaps maps{.illumination = illumination};
     maps.base.factor = material.color;
     maps.metallic.factor = Color(surface.metallic);
     maps.roughness.factor = Color(surface.roughness);
@@ -248,7 +248,7 @@ void MaterialMaker::bake(LobeMaps& maps, const MapImage& frame, const MapImage& 
     specular_lobes.color.texture = keep(frame, "reflected", images.reflected, true);
     specular_lobes.level.texture = keep(of_level, "level", images.level, false);
     lay_specular_lobes(material, std::move(specular_lobes), scattered, {.f0 = maps.specular.factor},
-                       surroundings);
+                       illumination);
     if (plain) lay_base();
     note_loss(Loss::approximated, entry.line,
               fmt::format("metallic and roughness images: mixed from {} Phong lobe{}",

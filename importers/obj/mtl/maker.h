@@ -23,7 +23,7 @@ struct MaterialMaker {
     const MtlValues& values;
     TextureReader& textures;
     LossTally& tally;
-    Surroundings surroundings = Surroundings::lamps;
+    Illumination illumination = Illumination::lamps;
     Material material = {};
     std::optional<MapImage> base = {};      ///< of map_Kd
     std::vector<std::string> handled = {};  ///< keys of maps

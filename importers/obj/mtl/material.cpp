@@ -161,7 +161,7 @@ void MaterialMaker::metallic_roughness() {
     material.ambient = values.ambient.value_or(Color(1)) * 0.1F;
     if (lobe_images(surface)) return;
     lay_base();
-    set_metallic_roughness(material, surface.metallic, surface.roughness, surface.f0, surroundings);
+    set_metallic_roughness(material, surface.metallic, surface.roughness, surface.f0, illumination);
 }
 
 void MaterialMaker::transparency() {
@@ -197,7 +197,7 @@ void MaterialMaker::coat() {
     const float amount = values.coat.value_or(0.0F);
     if (amount == 0) return;
     const double f0 = 0.04 * double(amount), roughness = double(values.coat_roughness.value_or(0));
-    if (surroundings == Surroundings::environment) {
+    if (illumination == Illumination::environment) {
         material.coat = clear_coat(double(amount), roughness);
         return;
     }
@@ -276,7 +276,7 @@ void note_files(const std::vector<MtlEntry>& entries, const TextureReader& textu
 
 void build_materials(const std::vector<Named>& used, const std::string& file,
                      const std::vector<MtlEntry>& entries, const ModelFolders& folders,
-                     Surroundings surroundings, Imported& result) {
+                     Illumination illumination, Imported& result) {
     Entries known = by_name(entries, result.losses);
     LossTally tally(and_more_materials), missing(LossTally::and_more);
     TextureReader textures(folders, result.scene, tally);
@@ -291,7 +291,7 @@ void build_materials(const std::vector<Named>& used, const std::string& file,
                                    .values = values,
                                    .textures = textures,
                                    .tally = tally,
-                                   .surroundings = surroundings};
+                                   .illumination = illumination};
             maker.make();
             material = std::move(maker.material);
         } else {

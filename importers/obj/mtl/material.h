@@ -14,6 +14,6 @@ namespace penumbra::obj {
 /// Appends a material for each of `used`, the names in the model `file`.
 void build_materials(const std::vector<Named>& used, const std::string& file,
                      const std::vector<MtlEntry>& entries, const ModelFolders& folders,
-                     Surroundings surroundings, Imported& result);
+                     Illumination illumination, Imported& result);
 
 }  // namespace penumbra::obj
