@@ -92,7 +92,8 @@ bool scale_absorption(Scene& scene, double scale) {
 // Reads every file once for each material that it gets, and places it as often as it is named; one
 // that absorbs light also for each scale.
 std::vector<Replacement> load_models(const std::vector<Placement>& placements,
-                                     const LoadOptions& options, Imported& result) {
+                                     const LoadOptions& options, Imported& result,
+                                     std::set<Illumination>& made_for) {
     std::map<std::tuple<fs::path, std::string, double>, Model> known;
     std::set<fs::path> absorbing;
     std::vector<Replacement> replacements;
@@ -106,6 +107,7 @@ std::vector<Replacement> load_models(const std::vector<Placement>& placements,
         auto found = known.find({file, material, absorbing.contains(file) ? scale : 1});
         if (found == known.end()) {
             Imported model = read_model(placement.file, options.model);
+            made_for.insert(model.illumination);
             if (options.sides)
                 for (Material& m : model.scene.materials) m.sides = *options.sides;
             const bool absorbs = scale_absorption(model.scene, scale);
@@ -183,12 +185,25 @@ void separate_coincident_facets(Imported& result) {
              count});
 }
 
-// Returns the bounds of what they lay.
-Bounds lay_layers(const Request& request, const LoadOptions& options, Imported& result) {
+// Without lights a scene gets an environment, if that is wanted.
+void light_scene(Scene& scene, const LoadOptions& options) {
+    if (options.studio != Studio::black && scene.lights.empty() && !scene.environment) {
+        Environment& studio = set_surroundings(scene, Surroundings::studio);
+        studio.sources = options.studio_sources;
+        studio.visible = false;
+        studio.stage =
+            options.studio == Studio::floor ? Environment::Stage::floor : Environment::Stage::plain;
+    }
+    if (options.sources && scene.environment) scene.environment->sources = *options.sources;
+}
+
+// Returns the bounds of what they lay. `made_for` is what the surfaces of the models were made for.
+Bounds lay_layers(const Request& request, const LoadOptions& options, Imported& result,
+                  std::set<Illumination>& made_for) {
     Scene& scene = result.scene;
     TextureFiles files;
     NewMaterials made;
-    const auto replacements = load_models(request.models, options, result);
+    const auto replacements = load_models(request.models, options, result, made_for);
     result.auto_exposure = !scene.lights.empty();  // a glTF file's
     request.for_each_layer([&](const Layer& layer) { lay_materials(layer, scene, files, made); });
     replace_materials(replacements, scene);
@@ -209,6 +224,7 @@ Bounds lay_layers(const Request& request, const LoadOptions& options, Imported& 
     request.for_each_layer(
         [&](const Layer& layer) { lay_camera(layer, scene, aims, box, aspect); });
     if (!sized && scene.camera != no_index) take_shape(scene.cameras[scene.camera], result.render);
+    light_scene(scene, options);
     complete(scene, aspect);
     separate_coincident_facets(result);
     const Losses parted = part_surfaces(scene);
@@ -217,6 +233,35 @@ Bounds lay_layers(const Request& request, const LoadOptions& options, Imported& 
     // After complete(), so that the rig's lights can be changed as well.
     for (const Layer& layer : request.settings) edit_lights(layer, scene);
     return box;
+}
+
+struct Laid {
+    Imported imported = {};
+    Bounds box = {};
+};
+
+// Whether there will be an environment is only known in the end; where a guess was wrong the models
+// are read again.
+Laid lay_well_lit(const Request& request, const LoadOptions& given) {
+    LoadOptions options = given;
+    bool surrounded = false;
+    request.for_each_layer(
+        [&](const Layer& layer) { surrounded |= layer.table.contains("environment"); });
+    if (surrounded)
+        options.model.illumination = Illumination::environment;
+    else if (options.studio != Studio::black)
+        options.model.illumination = Illumination::by_model;
+    while (true) {
+        Laid laid;
+        std::set<Illumination> made_for;
+        laid.box = lay_layers(request, options, laid.imported, made_for);
+        const Illumination found =
+            laid.imported.scene.environment ? Illumination::environment : Illumination::lamps;
+        laid.imported.illumination = found;
+        made_for.erase(found);
+        if (made_for.empty()) return laid;
+        options.model.illumination = found;
+    }
 }
 
 }  // namespace
@@ -231,8 +276,7 @@ Imported load_scene(const std::vector<fs::path>& inputs, const LoadOptions& opti
             throw Error(Failure::usage, "allowed_paths",
                         fmt::format("'{}' is not a folder", printable(folder.string())));
     const Request request = read_request(inputs, options);
-    Imported result;
-    const Bounds box = lay_layers(request, options, result);
+    auto [result, box] = lay_well_lit(request, options);
     result.files.insert(result.files.end(), inputs.begin(), inputs.end());
     if (options.sidecar) result.files.push_back(*options.sidecar);
     std::ranges::sort(result.files);

@@ -86,8 +86,9 @@ struct Writer {
     }
 
     // A sphere or a plane, with its twin where it has one.
-    void shape(const std::string& text, const Look& look) {
-        out += "  " + text + surface(look) + seen_directly(look) + " }\n";
+    void shape(const std::string& text, const Look& look, bool casts_shadow = true) {
+        out += "  " + text + surface(look) + (casts_shadow ? "" : " no_shadow") +
+               seen_directly(look) + " }\n";
         if (look.twin != no_index)
             out += "  " + text + surface(plan.looks[look.twin]) + seen_in_mirrors + " }\n";
     }
@@ -100,7 +101,8 @@ struct Writer {
     void plane(const Plane& plane, const Look& look) {
         title(plane.name);
         const Vec3 normal = plane.normal.normalized();
-        shape("plane { " + sdl::vector(normal) + ", " + number(normal.dot(plane.point)), look);
+        shape("plane { " + sdl::vector(normal) + ", " + number(normal.dot(plane.point)), look,
+              plane.casts_shadow);
     }
 
     void objects() {

@@ -232,16 +232,27 @@ void drop_unused_materials(Scene& scene) {
 
 constexpr std::size_t most_files = 256;  // of which one model is made
 
-Imported read(FileContent content, const ModelOptions& options, const Nesting& nesting) {
+// What Illumination::by_model comes to.
+ModelOptions settled(const ModelOptions& options, const tinygltf::Model& model) {
+    ModelOptions result = options;
+    if (options.illumination == Illumination::by_model)
+        result.illumination =
+            model.lights.empty() ? Illumination::environment : Illumination::lamps;
+    return result;
+}
+
+Imported read(FileContent content, const ModelOptions& given, const Nesting& nesting) {
     Imported imported;
     Losses& opening = imported.losses;
     Amend at_time;
-    if (options.time || !options.animation.empty())
+    if (given.time || !given.animation.empty())
         at_time = [&](const Document& whole, nlohmann::json& root) {
-            return follow_pointers(whole, options, root, opening);
+            return follow_pointers(whole, given, root, opening);
         };
     const Document document = open_document(std::move(content), opening, at_time);
     const tinygltf::Model& model = document.model;
+    const ModelOptions options = settled(given, model);
+    imported.illumination = options.illumination;
     LossTally losses;
     Reader reader{document, imported.scene, losses, options};
     reader.pose = read_pose(reader);

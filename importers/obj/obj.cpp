@@ -39,6 +39,7 @@ Imported read(std::string text, const std::string& name, const ModelFolders& fol
     obj::build_meshes(std::move(model), result.scene, tally);
     std::ranges::copy(tally.losses.losses(), std::back_inserter(result.losses));
     result.models.push_back({.file = name, .format = "OBJ"});
+    result.illumination = illumination;
     return result;
 }
 
@@ -48,18 +49,24 @@ std::string text_of(std::span<const std::byte> bytes, const std::string& name) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+// The format knows no lights.
+Illumination settled(const ModelOptions& options) {
+    return options.illumination == Illumination::by_model ? Illumination::environment
+                                                          : options.illumination;
+}
+
 }  // namespace
 
 Imported read_obj(const std::filesystem::path& file, const ModelOptions& options) {
     Imported imported =
-        read(read_text(file), file.string(), folders_of(file, options), options.illumination);
+        read(read_text(file), file.string(), folders_of(file, options), settled(options));
     imported.files.push_back(file);
     return imported;
 }
 
 Imported read_obj(std::span<const std::byte> bytes, const std::string& name,
                   const ModelOptions& options) {
-    return read(text_of(bytes, name), name, folders_in_memory(name, options), options.illumination);
+    return read(text_of(bytes, name), name, folders_in_memory(name, options), settled(options));
 }
 
 }  // namespace penumbra

@@ -104,11 +104,11 @@ void turn(Camera& camera, Index index, const CameraKeys& keys, CameraAims& aims,
         camera.direction = box.center() - camera.position;
 }
 
-// Fits a camera without a position of its own to the box. If it is orthographic then somebody gave
-// its width, which stays.
-void refit(Camera& camera, const Bounds& box, double aspect) {
+// Fits a camera without a position of its own to the scene. If it is orthographic then somebody
+// gave its width, which stays.
+void refit(Camera& camera, const Scene& scene, double aspect) {
     const double width = camera.extent;
-    frame(camera, box, aspect);
+    frame(camera, scene, aspect);
     camera.extent = width;
 }
 
@@ -136,7 +136,7 @@ void lay_camera(const Layer& layer, Scene& scene, CameraAims& aims, const Bounds
     set_lens(camera, keys);
     if (keys.up) camera.up = *keys.up;
     if (!(keys.position && keys.look_at)) check(*section, camera);
-    if (aims.framed.contains(scene.camera)) refit(camera, box, aspect);
+    if (aims.framed.contains(scene.camera)) refit(camera, scene, aspect);
     turn(camera, scene.camera, keys, aims, box);
     check(*section, camera);
 }

@@ -58,6 +58,9 @@ void lay_environment(const Layer& layer, Scene& scene, TextureFiles& files) {
     section->read("intensity", environment.intensity, non_negative);
     section->read("sources", environment.sources, {.low = 0, .high = most_sources});
     section->read("visible", environment.visible);
+    bool floor = environment.stage == Environment::Stage::floor;
+    if (section->read("floor", floor))
+        environment.stage = floor ? Environment::Stage::floor : Environment::Stage::plain;
     section->finish();
     if (!scene.environment && !section->has("name"))
         section->fail("", "there is no environment to change: give it a 'name', an 'image' or a "

@@ -45,6 +45,7 @@ struct Imported {
     /// wherever they are there. None of them may be overwritten: see ExportOptions::inputs.
     std::vector<std::filesystem::path> files = {};
     Losses losses = {};  ///< what the files said that Scene cannot hold
+    Illumination illumination = Illumination::lamps;  ///< that its surfaces were made for
 };
 
 /// Which of the pictures that a model file can give is wanted, and what it may read for that: to
@@ -91,6 +92,13 @@ Imported read_obj(const std::filesystem::path& file, const ModelOptions& options
 Imported read_obj(std::span<const std::byte> bytes, const std::string& name,
                   const ModelOptions& options = {});
 
+/// What a scene without lights gets.
+enum class Studio {
+    black,  ///< a rig of three lights, in the dark
+    plain,  ///< Surroundings::studio, before a plain background
+    floor,  ///< and a seamless floor, unless it would hide something: see Environment::stage
+};
+
 struct LoadOptions {
     std::optional<std::filesystem::path> sidecar = {};  ///< laid over the inputs
     /// "render.samples=3": any sidecar key. Errors say "setting 'render.samples=3': ...".
@@ -100,6 +108,9 @@ struct LoadOptions {
     std::optional<Sides> sides = {};
     ModelOptions model = {};
     NormalMaps normal_maps = NormalMaps::bake;
+    Studio studio = Studio::black;
+    int studio_sources = 64;          ///< of that environment
+    std::optional<int> sources = {};  ///< of any environment: 0 to most_sources
 };
 
 /// Reads models (see formats()) and sidecars (.toml) into one scene, lays sidecars and settings

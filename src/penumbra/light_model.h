@@ -101,7 +101,11 @@ struct View {
 View view_of(const Camera& camera, int width, int height);
 
 /// Where the light of a scene comes from: a few lamps in the dark, or all around.
-enum class Illumination { lamps, environment };
+enum class Illumination {
+    lamps,
+    environment,
+    by_model,  ///< of ModelOptions: all around, unless the model brings lights of its own
+};
 
 /// Phong terms that imitate a glTF metallic-roughness surface; material.color is its base colour
 /// and `f0` the dielectric reflectance at normal incidence (0.04 for ior 1.5). An approximation: a

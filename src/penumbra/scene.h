@@ -235,6 +235,7 @@ struct Plane {
     Vec3 normal = {0, 1, 0};  ///< need not be unit
     Index material = no_index;
     bool backdrop = false;  ///< see Instance
+    bool casts_shadow = true;
 };
 
 /// f_a = 2 / (1 + (d / distance)^power), d the distance to the source: POV-Ray's
@@ -309,6 +310,12 @@ struct Environment {
     double intensity = 1;  ///< times the image, which is a radiance
     int sources = 64;      ///< 0 to most_sources; 0: it is seen and gives no light
     bool visible = true;   ///< replaces background and sky; else only what mirrors show of them
+    /// What stands around the things. plain: where the environment is not visible the background
+    /// has the colour that a floor has in the open. floor: there is one as well, level and endless,
+    /// just below the lowest of the things. It casts no shadow, so that light comes from below, and
+    /// is a backdrop. Without a floor: scenes with planes, or whose camera stands within the things
+    /// or below them.
+    enum class Stage { none, plain, floor } stage = Stage::none;
 };
 
 /// Everything in one picture but its size and quality.

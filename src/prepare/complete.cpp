@@ -1,6 +1,7 @@
 // What a picture needs and its author left out: material, camera, lights.
 #include "prepare/complete.h"
 
+#include "prepare/outline.h"
 #include "scene/defects.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace penumbra {
 namespace {
 
 /// Of the picture, on each side.
-constexpr double margin = 0.06;
+constexpr double margin = 0.07;
 
 /// What a camera sees, as vectors of length 1.
 struct Basis {
@@ -25,57 +26,41 @@ Basis basis_of(const Camera& camera) {
     return {.right = right, .up = right.cross(forward), .forward = forward};
 }
 
-std::array<Vec3, 8> corners_of(const Bounds& box, const Basis& basis) {
-    std::array<Vec3, 8> corners;
-    for (unsigned i = 0; i < 8; ++i) {
-        const Vec3 p((i & 1U) != 0 ? box.max.x : box.min.x, (i & 2U) != 0 ? box.max.y : box.min.y,
-                     (i & 4U) != 0 ? box.max.z : box.min.z);
-        corners[i] = {p.dot(basis.right), p.dot(basis.up), p.dot(basis.forward)};
-    }
-    return corners;
-}
-
-// Where the sides of a wedge of half-width `slope` per depth touch the corners along `axis`:
-// with its tip at depth z, the tip must lie in [low + slope z, high - slope z].
+// Where the sides of a wedge of half-width `slope` per depth touch the things along an axis: with
+// its tip at depth z, the tip must lie in [low + slope z, high - slope z].
 struct Wedge {
     double slope = 0, low = -1e300, high = 1e300;
     double deepest_tip() const { return (high - low) / (2 * slope); }
     double middle() const { return (low + high) / 2; }
 };
 
-Wedge wedge_around(const std::array<Vec3, 8>& corners, int axis, double slope) {
-    Wedge wedge = {.slope = slope};
-    for (const Vec3& p : corners) {
-        wedge.low = std::max(wedge.low, p[axis] - slope * p.z);
-        wedge.high = std::min(wedge.high, p[axis] + slope * p.z);
-    }
-    return wedge;
-}
-
-void frame_perspective(Camera& camera, const Bounds& box, double aspect) {
+void frame_perspective(Camera& camera, const Scene& scene, double aspect) {
     const Basis basis = basis_of(camera);
-    const auto corners = corners_of(box, basis);
     const bool horizontal = camera.side == Camera::Side::horizontal;
     const double slope = std::tan(camera.fov / 2) * (1 - 2 * margin);
-    const Wedge across = wedge_around(corners, 0, horizontal ? slope : slope * aspect);
-    const Wedge along = wedge_around(corners, 1, horizontal ? slope / aspect : slope);
-    const double depth = std::min(across.deepest_tip(), along.deepest_tip());
-    camera.position =
-        basis.right * across.middle() + basis.up * along.middle() + basis.forward * depth;
+    const double across = horizontal ? slope : slope * aspect;
+    const double along = horizontal ? slope / aspect : slope;
+    const auto [left, right, bottom, top] = reaches(
+        scene,
+        std::array{basis.right - basis.forward * across, -basis.right - basis.forward * across,
+                   basis.up - basis.forward * along, -basis.up - basis.forward * along});
+    const Wedge x = {.slope = across, .low = left, .high = -right};
+    const Wedge y = {.slope = along, .low = bottom, .high = -top};
+    const double depth = std::min(x.deepest_tip(), y.deepest_tip());
+    camera.position = basis.right * x.middle() + basis.up * y.middle() + basis.forward * depth;
 }
 
-void frame_orthographic(Camera& camera, const Bounds& box, double aspect) {
+void frame_orthographic(Camera& camera, const Scene& scene, double aspect) {
     const Basis basis = basis_of(camera);
-    double width = 0, height = 0;
-    for (const Vec3& p : corners_of(box, basis)) {
-        const Vec3 c(box.center().dot(basis.right), box.center().dot(basis.up), 0);
-        width = std::max(width, 2 * std::abs(p.x - c.x));
-        height = std::max(height, 2 * std::abs(p.y - c.y));
-    }
+    const auto [right, left, top, bottom, far, near] =
+        reaches(scene, std::array{basis.right, -basis.right, basis.up, -basis.up, basis.forward,
+                                  -basis.forward});
     const bool horizontal = camera.side == Camera::Side::horizontal;
-    const double side = std::max(width, height * aspect) / (1 - 2 * margin);
+    const double side = std::max(right + left, (top + bottom) * aspect) / (1 - 2 * margin);
     camera.extent = horizontal ? side : side / aspect;
-    camera.position = box.center() - basis.forward * (4 * box.radius());
+    const double away = std::max({right + left, top + bottom, far + near});
+    camera.position = basis.right * ((right - left) / 2) + basis.up * ((top - bottom) / 2) -
+                      basis.forward * (near + 2 * away);
 }
 
 Bounds box_around(const Vec3& center, double half) {
@@ -98,7 +83,7 @@ void give_material(Scene& scene, Things& things) {
 void give_camera(Scene& scene, double aspect) {
     if (scene.cameras.empty()) {
         scene.cameras.push_back(default_camera());
-        frame(scene.cameras[0], stage(scene), aspect);
+        frame(scene.cameras[0], scene, aspect);
     }
     if (scene.camera == no_index) scene.camera = 0;
 }
@@ -176,11 +161,11 @@ Bounds stage(const Scene& scene) {
     return box_around(scene.planes[0].point + normal * (normal.y < 0 ? -1 : 1), 1);
 }
 
-void frame(Camera& camera, const Bounds& box, double aspect) {
-    assert(box.radius() > 0 && aspect > 0);
+void frame(Camera& camera, const Scene& scene, double aspect) {
+    assert(aspect > 0);
     if (camera.projection == Camera::Projection::orthographic)
-        return frame_orthographic(camera, box, aspect);
-    frame_perspective(camera, box, aspect);
+        return frame_orthographic(camera, scene, aspect);
+    frame_perspective(camera, scene, aspect);
 }
 
 void complete(Scene& scene, double aspect) {

@@ -12,9 +12,10 @@ Camera default_camera();
 /// around that point, standing on the first plane, or around the origin.
 Bounds stage(const Scene& scene);
 
-/// Moves `camera` along and across its direction of view until the corners of `box` fill its
-/// picture but for a margin of 6 % at the nearest edges. An orthographic camera also gets its
-/// extent. Precondition: `box` has a radius above 0, and `aspect`, width / height, is above 0.
-void frame(Camera& camera, const Bounds& box, double aspect);
+/// Moves `camera` along and across its direction of view until the outline of all things, or the
+/// box stage() where there are none, fills its picture but for a margin of 7 % at the nearest
+/// edges. An orthographic camera also gets its extent. Precondition: `aspect`, width / height, is
+/// above 0.
+void frame(Camera& camera, const Scene& scene, double aspect);
 
 }  // namespace penumbra

@@ -137,9 +137,9 @@ class Hasher {
         add_all(name, center, radius, material);
     }
     void add(const Plane& plane) {
-        const auto& [name, point, normal, material, backdrop] = plane;
+        const auto& [name, point, normal, material, backdrop, casts_shadow] = plane;
         static_cast<void>(backdrop);
-        add_all(name, point, normal, material);
+        add_all(name, point, normal, material, casts_shadow);
     }
     void add(const Attenuation& attenuation) {
         const auto& [distance, power] = attenuation;
@@ -164,9 +164,9 @@ class Hasher {
         add_all(texture, gain, rotation);
     }
     void add(const Environment& environment) {
-        const auto& [name, texture, rotation, before_camera, intensity, sources, visible] =
+        const auto& [name, texture, rotation, before_camera, intensity, sources, visible, stage] =
             environment;
-        add_all(name, texture, rotation, before_camera, intensity, sources, visible);
+        add_all(name, texture, rotation, before_camera, intensity, sources, visible, stage);
     }
     void add(const Antialiasing& antialiasing) {
         const auto& [threshold, depth] = antialiasing;

@@ -50,7 +50,8 @@ void Blockers::find_group(const PreparedScene& prepared, const PointGroups& poin
         if (prepared.material_of(object).opaque) shapes.push_back(object);
     };
     for (std::size_t k = 0; k < prepared.planes.size(); ++k)
-        if (plane_between(prepared.planes[k], points.along[index * prepared.planes.size() + k],
+        if (prepared.scene.planes[k].casts_shadow &&
+            plane_between(prepared.planes[k], points.along[index * prepared.planes.size() + k],
                           light.along[k]))
             add(prepared.first_plane() + Index(k));
     if (facets || !spheres_.empty()) {

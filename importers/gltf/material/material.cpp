@@ -292,7 +292,11 @@ Index add_material(Reader& reader, int index, Images images) {
     read.material.name = index < 0             ? "default"
                          : source.name.empty() ? fmt::format("material{}", index)
                                                : source.name;
-    read.material.ambient = Color(0.1F);
+    // An environment stands for the ambience of a few lamps.
+    if (reader.options.illumination == Illumination::environment)
+        read.material.ambient = Color(0);
+    else
+        read.material.ambient = Color(0.1F);
     read.read();
     read.read_sides();
     if (images == Images::all && read.texcoord) reader.cache.texcoords[index] = *read.texcoord;

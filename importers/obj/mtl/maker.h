@@ -35,6 +35,8 @@ struct MaterialMaker {
     void highlight();
     void phong();
     void constant();
+    /// The part of Ka that is shown: none where an environment stands for it.
+    float ambience() const { return illumination == Illumination::environment ? 0 : 0.1F; }
     void metallic_roughness();
     void mirror();
     void transparency();

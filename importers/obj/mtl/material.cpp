@@ -111,7 +111,7 @@ void MaterialMaker::phong() {
     lay_base();
     material.diffuse = 1;
     material.specular = 0;
-    material.ambient = values.ambient.value_or(Color(1)) * 0.1F;
+    material.ambient = values.ambient.value_or(Color(1)) * ambience();
     const int model = illum();
     if (model == 0) return constant();
     if (model == 10) note_loss(Loss::approximated, entry.line, "illum 10 is taken as 2");
@@ -158,7 +158,7 @@ void MaterialMaker::metallic_roughness() {
                                  .roughness =
                                      values.roughness.value_or(std::pow(2 / (ns + 2), 0.25F)),
                                  .f0 = ior > 1 ? r * r : 0.04F};
-    material.ambient = values.ambient.value_or(Color(1)) * 0.1F;
+    material.ambient = values.ambient.value_or(Color(1)) * ambience();
     if (lobe_images(surface)) return;
     lay_base();
     set_metallic_roughness(material, surface.metallic, surface.roughness, surface.f0, illumination);

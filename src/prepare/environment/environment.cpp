@@ -1,5 +1,6 @@
 // Environment -> directional lights and a Sky.
 #include "prepare/environment/cut.h"
+#include "prepare/environment/floor.h"
 #include "scene/looks.h"
 #include "scene/transforms.h"
 
@@ -31,19 +32,21 @@ Vec3 turned(const Vec3& direction, const Matrix& rotation) {
     return result;
 }
 
-void add_lights(Scene& scene, const Environment& environment, const Matrix& rotation,
-                const std::vector<SkySource>& sources) {
+std::vector<Light> lights_of(const Environment& environment, const Matrix& rotation,
+                             const std::vector<SkySource>& sources) {
+    std::vector<Light> lights;
     for (std::size_t i = 0; i < sources.size(); ++i) {
         const auto& [toward, flux] = sources[i];
         const double strongest = std::max({flux.x, flux.y, flux.z});
         // Our diffuse term has no 1 / pi: it is part of the source.
-        scene.lights.push_back({.name = fmt::format("source {} of {} of environment {}", i + 1,
-                                                    sources.size(), environment.name),
-                                .type = Light::Type::directional,
-                                .direction = turned(-toward, rotation),
-                                .color = Color(flux / strongest),
-                                .intensity = environment.intensity * strongest / std::numbers::pi});
+        lights.push_back({.name = fmt::format("source {} of {} of environment {}", i + 1,
+                                              sources.size(), environment.name),
+                          .type = Light::Type::directional,
+                          .direction = turned(-toward, rotation),
+                          .color = Color(flux / strongest),
+                          .intensity = environment.intensity * strongest / std::numbers::pi});
     }
+    return lights;
 }
 
 // The lobe of cos^n has about the variance 1 / n in each direction, and variances add up; the light
@@ -90,16 +93,21 @@ void light_by_environment(Scene& scene) {
     scene.environment.reset();
     Matrix rotation = environment.rotation;
     if (environment.before_camera) rotation = heading(scene.cameras[scene.camera]) * rotation;
+    std::vector<Light> lights;
     if (environment.sources > 0 && environment.intensity > 0) {
         const SkySources cut =
             sky_sources(sky_cells(scene.textures[environment.texture]), environment.sources);
-        add_lights(scene, environment, rotation, cut.sources);
+        lights = lights_of(environment, rotation, cut.sources);
         widen_lobes(scene, cut.spread);
     }
+    scene.lights.insert(scene.lights.end(), lights.begin(), lights.end());
     const Sky sky = {
         .texture = environment.texture, .gain = environment.intensity, .rotation = rotation};
+    const bool staged = environment.stage != Environment::Stage::none;
+    if (environment.stage == Environment::Stage::floor) give_floor(scene);
     if (!environment.visible) {
         scene.mirror_sky = sky;
+        if (staged && !scene.sky) scene.background = floor_radiance(lights);
         return;
     }
     scene.sky = sky;

@@ -155,7 +155,8 @@ PreparedScene::PreparedScene(const Scene& given, const PreparedScene* earlier, b
     }
     lights = source_groups(scene.lights, planes);
     for (Index object = first_sphere(); object < objects(); ++object)
-        if (!material_of(object).opaque) translucent_shapes.push_back(object);
+        if (!material_of(object).opaque && casts_shadow(object))
+            translucent_shapes.push_back(object);
 }
 
 }  // namespace penumbra

@@ -121,6 +121,9 @@ struct PreparedScene {
     bool displaces_in_mesh(Index object) const {
         return object < first_sphere() && own_textures[scene.instances[object].mesh] != 0;
     }
+    bool casts_shadow(Index object) const {
+        return object < first_plane() || scene.planes[object - first_plane()].casts_shadow;
+    }
     Index objects() const { return first_plane() + Index(planes.size()); }
     const Sphere& sphere(Index object) const { return scene.spheres[object - first_sphere()]; }
     const PreparedPlane& plane(Index object) const { return planes[object - first_plane()]; }

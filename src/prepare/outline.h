@@ -1,0 +1,24 @@
+// How far a scene reaches in a direction.
+#pragma once
+
+#include "penumbra/scene.h"
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace penumbra {
+
+/// For each direction d, of any length, the largest p . d of all points p of facets and spheres;
+/// of the box stage() where there are none. Of meshes that are shown very often it is that of
+/// their boxes.
+void reaches(const Scene& scene, std::span<const Vec3> directions, std::span<double> farthest);
+
+template <std::size_t n>
+std::array<double, n> reaches(const Scene& scene, const std::array<Vec3, n>& directions) {
+    std::array<double, n> farthest;
+    reaches(scene, directions, farthest);
+    return farthest;
+}
+
+}  // namespace penumbra
