@@ -3,8 +3,8 @@
 #include "base/hash.h"
 #include "exporters/pov/sdl.h"
 #include "scene/check_options.h"
+#include "scene/surface/vertex_textures.h"
 #include "scene/texture/image_maps.h"
-#include "scene/vertex_textures.h"
 
 #include "penumbra/light_model.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "image/texels.h"
-#include "scene/metallic_roughness.h"
+#include "scene/surface/metallic_roughness.h"
 
 #include "penumbra/scene.h"
 

@@ -1,7 +1,6 @@
 // What a picture needs and its author left out: material, camera, lights.
 #include "prepare/complete.h"
 
-#include "prepare/outline.h"
 #include "scene/defects.h"
 
 #include <algorithm>
@@ -61,10 +60,6 @@ void frame_orthographic(Camera& camera, const Scene& scene, double aspect) {
     const double away = std::max({right + left, top + bottom, far + near});
     camera.position = basis.right * ((right - left) / 2) + basis.up * ((top - bottom) / 2) -
                       basis.forward * (near + 2 * away);
-}
-
-Bounds box_around(const Vec3& center, double half) {
-    return {.min = center - Vec3(half), .max = center + Vec3(half)};
 }
 
 Index default_material(Scene& scene) {
@@ -150,15 +145,6 @@ Camera default_camera() {
     camera.name = "default";
     camera.direction = -Vec3(0.6, 0.45, 1).normalized();
     return camera;
-}
-
-Bounds stage(const Scene& scene) {
-    Bounds box = bounds(scene);
-    if (!box.empty() && box.radius() > 0) return box;
-    const Vec3 center = box.empty() ? Vec3(0) : box.center();
-    if (!box.empty() || scene.planes.empty()) return box_around(center, 1);
-    const Vec3 normal = scene.planes[0].normal.normalized();
-    return box_around(scene.planes[0].point + normal * (normal.y < 0 ? -1 : 1), 1);
 }
 
 void frame(Camera& camera, const Scene& scene, double aspect) {

@@ -1,16 +1,14 @@
 // What complete() gives a scene, piece by piece.
 #pragma once
 
+#include "prepare/outline.h"
+
 #include "penumbra/scene.h"
 
 namespace penumbra {
 
 /// Looks from front-right-above; not framed yet.
 Camera default_camera();
-
-/// The bounds of `scene`; when they are empty or a point, a box of side 2 where something would be:
-/// around that point, standing on the first plane, or around the origin.
-Bounds stage(const Scene& scene);
 
 /// Moves `camera` along and across its direction of view until the outline of all things, or the
 /// box stage() where there are none, fills its picture but for a margin of 7 % at the nearest

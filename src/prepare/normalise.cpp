@@ -2,7 +2,7 @@
 #include "image/texels.h"
 #include "prepare/scale.h"
 #include "scene/check_options.h"
-#include "scene/looks.h"
+#include "scene/surface/looks.h"
 #include "scene/tolerances.h"
 #include "scene/transforms.h"
 

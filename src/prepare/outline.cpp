@@ -1,6 +1,5 @@
 #include "prepare/outline.h"
 
-#include "prepare/complete.h"
 #include "scene/transforms.h"
 
 #include <algorithm>
@@ -10,6 +9,10 @@
 namespace penumbra {
 
 namespace {
+
+Bounds box_around(const Vec3& center, double half) {
+    return {.min = center - Vec3(half), .max = center + Vec3(half)};
+}
 
 constexpr std::size_t most_corners = 30'000'000;  // that are looked at one by one
 
@@ -43,6 +46,15 @@ Reach in_mesh(const Vec3& direction, const Matrix& m) {
 }
 
 }  // namespace
+
+Bounds stage(const Scene& scene) {
+    Bounds box = bounds(scene);
+    if (!box.empty() && box.radius() > 0) return box;
+    const Vec3 center = box.empty() ? Vec3(0) : box.center();
+    if (!box.empty() || scene.planes.empty()) return box_around(center, 1);
+    const Vec3 normal = scene.planes[0].normal.normalized();
+    return box_around(scene.planes[0].point + normal * (normal.y < 0 ? -1 : 1), 1);
+}
 
 void reaches(const Scene& scene, std::span<const Vec3> directions, std::span<double> farthest) {
     const bool one_by_one = 3 * facet_count(scene) <= most_corners;

@@ -3,7 +3,7 @@
 #include "support/inputs.h"
 
 using namespace penumbra;
-using test::Inputs, test::Studio, test::facet_obj, test::material_of, test::near;
+using test::Inputs, test::StudioFiles, test::facet_obj, test::material_of, test::near;
 
 namespace {
 
@@ -25,7 +25,7 @@ const char* const stage = R"({
 }  // namespace
 
 TEST_CASE("A sidecar alone is a complete scene") {
-    const Imported result = Studio().load({"studio.toml"});
+    const Imported result = StudioFiles().load({"studio.toml"});
     CHECK(defects(result.scene).empty());
     CHECK(result.scene.cameras.size() == 1);
     CHECK(result.scene.lights.size() == 1);
@@ -57,7 +57,7 @@ TEST_CASE("Inputs that cannot be read are named") {
 }
 
 TEST_CASE("Several sidecars form one scene and a later one wins") {
-    Studio inputs;
+    StudioFiles inputs;
     inputs.file("Night.TOML", "[lighting]\nambient = 0.125\n[material.floor]\ndiffuse = 0.75\n"
                               "[[light]]\nname = \"moon\"\nposition = [0, 9, 0]");
     const Scene scene = inputs.load({"studio.toml", "Night.TOML"}).scene;
@@ -72,7 +72,7 @@ TEST_CASE("Several sidecars form one scene and a later one wins") {
 }
 
 TEST_CASE("Only the keys that are given change a material") {
-    Studio inputs;
+    StudioFiles inputs;
     inputs.file("a.toml",
                 "[material.floor]\nchecker = { colors = [[1, 0, 0], [0, 1, 0]], size = 3 }");
     const auto pattern = [&](const std::string& setting) {
@@ -260,7 +260,7 @@ TEST_CASE("Models of several inputs share one scene") {
 }
 
 TEST_CASE("The light of a glTF file asks for an exposure unless somebody gives one") {
-    Studio inputs;
+    StudioFiles inputs;
     inputs.file("stage.gltf", stage).file("facet.obj", facet_obj);
     const auto asks = [&](const std::vector<std::string>& names,
                           const std::vector<std::string>& settings = {}) {

@@ -6,10 +6,10 @@
 #include <cmath>
 
 using namespace penumbra;
-using test::Inputs, test::Studio, test::material_of, test::near;
+using test::Inputs, test::StudioFiles, test::material_of, test::near;
 
 TEST_CASE("A setting changes any key and comes last") {
-    const Studio inputs;
+    const StudioFiles inputs;
     const Imported result = inputs.set(
         {"studio.toml"},
         {"lighting.ambient=0.1", "render.size=[320,240]", "render.samples = 3",
@@ -39,13 +39,13 @@ TEST_CASE("A setting changes any key and comes last") {
 
 TEST_CASE("A setting may add things as a sidecar does") {
     const Scene scene =
-        Studio().set({"studio.toml"}, {"light=[{position=[0,1,0], intensity=.5}]"}).scene;
+        StudioFiles().set({"studio.toml"}, {"light=[{position=[0,1,0], intensity=.5}]"}).scene;
     REQUIRE(scene.lights.size() == 2);
     CHECK(scene.lights[1].intensity == 0.5);
 }
 
 TEST_CASE("A setting's bare words are strings") {
-    const Studio inputs;
+    const StudioFiles inputs;
     CHECK(inputs.set({"studio.toml"}, {"light.0.name=Left door"}).scene.lights[0].name ==
           "Left door");
     CHECK(inputs.set({"studio.toml"}, {"light.0.name=7"}).scene.lights[0].name == "7");
@@ -63,7 +63,7 @@ TEST_CASE("A setting quotes a name that has dots") {
 }
 
 TEST_CASE("A setting defines a material that something uses") {
-    const Studio inputs;
+    const StudioFiles inputs;
     const Scene scene =
         inputs.set({"studio.toml"}, {"sphere.0.material=glass", "material.glass.opacity=0.25"})
             .scene;
@@ -75,7 +75,7 @@ TEST_CASE("A setting defines a material that something uses") {
 }
 
 TEST_CASE("What is wrong with a setting is a wrong use of the program") {
-    const Studio inputs;
+    const StudioFiles inputs;
     const std::vector<std::string> in = {"studio.toml"};
     CHECK(inputs.set_problem(in, "lighting.ambiet=0.1") ==
           "setting 'lighting.ambiet=0.1': unknown key 'ambiet' in [lighting] (did you mean "
@@ -133,7 +133,7 @@ TEST_CASE("The lights of the rig can be set, too") {
 }
 
 TEST_CASE("The penumbra option sets every delta and keeps the patterns") {
-    const Studio inputs;
+    const StudioFiles inputs;
     const Light lamp = inputs.load({"studio.toml"}, {.penumbra = 0.7}).scene.lights.at(0);
     CHECK(lamp.penumbra.delta == 0.7);
     CHECK(lamp.penumbra.layout == Penumbra::Layout::sphere);

@@ -73,8 +73,8 @@ position = [3, 5, 4]
 penumbra = { delta = 0.1, pattern = "sphere", count = 9 }
 )";
 
-struct Studio : Inputs {
-    Studio() { file("studio.toml", studio); }
+struct StudioFiles : Inputs {
+    StudioFiles() { file("studio.toml", studio); }
 };
 
 inline const Material& material_of(const Scene& scene, const std::string& name) {

@@ -1,6 +1,6 @@
 // What lies over or under the roughness: transmission, volume, clear coat.
 #include "importers/gltf/material/material_reader.h"
-#include "scene/metallic_roughness.h"
+#include "scene/surface/metallic_roughness.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include "importers/obj/mtl/maker.h"
 #include "importers/obj/text/encoding.h"
 #include "importers/obj/text/tally.h"
-#include "scene/metallic_roughness.h"
+#include "scene/surface/metallic_roughness.h"
 
 #include "penumbra/light_model.h"
 

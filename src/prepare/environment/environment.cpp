@@ -1,7 +1,7 @@
 // Environment -> directional lights and a Sky.
 #include "prepare/environment/cut.h"
 #include "prepare/environment/floor.h"
-#include "scene/looks.h"
+#include "scene/surface/looks.h"
 #include "scene/transforms.h"
 
 #include "penumbra/prepare.h"

@@ -1,6 +1,6 @@
 #include "tracer/prepared/prepared_scene.h"
 
-#include "scene/vertex_textures.h"
+#include "scene/surface/vertex_textures.h"
 #include "tracer/prepared/scene_boxes.h"
 
 #include "penumbra/light_model.h"

@@ -5,7 +5,7 @@
 #include "penumbra/light_model.h"
 
 using namespace penumbra;
-using test::Inputs, test::Studio;
+using test::Inputs, test::StudioFiles;
 
 namespace {
 
@@ -83,7 +83,7 @@ TEST_CASE("A setting changes an environment, or takes it away") {
 }
 
 TEST_CASE("An environment stands beside lights") {
-    Studio inputs;
+    StudioFiles inputs;
     inputs.file("more.toml", "[environment]\nname = \"overcast\"");
     const Scene scene = inputs.load({"studio.toml", "more.toml"}).scene;
     CHECK(scene.lights.size() == 1);
@@ -113,7 +113,7 @@ TEST_CASE("What is wrong with an environment is named with its place") {
           "studio.toml:1:1: there is no environment to change: give it a 'name', an 'image' or a "
           "'color'");
     CHECK(problem("environment = \"studio\"") == "studio.toml:1:15: [environment] must be a table");
-    CHECK(Studio().set_problem({"studio.toml"}, "environment.sources=3") ==
+    CHECK(StudioFiles().set_problem({"studio.toml"}, "environment.sources=3") ==
           "setting 'environment.sources=3': there is no environment to change: give it a 'name', "
           "an 'image' or a 'color'");
 }

@@ -73,7 +73,7 @@ TEST_CASE("[render] says where rays go through a pixel") {
 
 TEST_CASE("backdrop marks spheres and planes that the picture is not of") {
     const Scene scene = load("[[sphere]]\nbackdrop = true\n[[sphere]]\n[[plane]]\n"
-                             "[[plane]]\nbackdrop = true")
+                             "[[plane]]\npoint = [0, 1, 0]\nbackdrop = true")
                             .scene;
     CHECK(scene.spheres[0].backdrop);
     CHECK_FALSE(scene.spheres[1].backdrop);

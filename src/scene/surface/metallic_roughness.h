@@ -8,7 +8,7 @@
 
 namespace penumbra {
 
-/// What follows from the roughness alone; scene/metallic_roughness.cpp explains the terms.
+/// What follows from the roughness alone; scene/surface/metallic_roughness.cpp explains the terms.
 struct RoughnessLobe {
     double highlight = 0;  ///< K_S of a surface that reflects all, not limited
     double exponent = 1;   ///< N

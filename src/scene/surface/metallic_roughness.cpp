@@ -1,5 +1,5 @@
 // Metallic-roughness -> Phong.
-#include "scene/metallic_roughness.h"
+#include "scene/surface/metallic_roughness.h"
 
 #include "penumbra/light_model.h"
 

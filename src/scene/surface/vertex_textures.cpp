@@ -1,4 +1,4 @@
-#include "scene/vertex_textures.h"
+#include "scene/surface/vertex_textures.h"
 
 #include <algorithm>
 
