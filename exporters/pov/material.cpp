@@ -165,9 +165,13 @@ std::string declare_lobes(const Plan& plan, const Look& look, const std::string&
             out += tinted_layers(plan, look, k, *tint);
         else
             for (const Layer& layer : layers_of(plan, look, k)) out += texture_text(plan, layer);
-        entries +=
-            fmt::format("{}[{} {}]", k == 0 ? "" : " ",
-                        number(double(k) / double(std::max<std::size_t>(1, count - 1))), part);
+        const double last = double(std::max<std::size_t>(1, count - 1));
+        if (m.specular_lobes && !m.specular_lobes->mixed)
+            entries += fmt::format("{}[{} {}] [{} {}]", k == 0 ? "" : " ",
+                                   number(std::max(0.0, (double(k) - 0.5) / last)), part,
+                                   number(std::min(1.0, (double(k) + 0.5) / last)), part);
+        else
+            entries += fmt::format("{}[{} {}]", k == 0 ? "" : " ", number(double(k) / last), part);
     }
     if (count > 1)
         out += "#declare " + name + " =\n" +

@@ -86,10 +86,11 @@ struct Writer {
     }
 
     // A sphere or a plane, with its twin where it has one.
-    void shape(const std::string& text, const Look& look, bool casts_shadow = true) {
-        out += "  " + text + surface(look) + (casts_shadow ? "" : " no_shadow") +
-               seen_directly(look) + " }\n";
-        if (look.twin != no_index)
+    void shape(const std::string& text, const Look& look, bool in_mirrors = true,
+               const char* flags = "") {
+        out += "  " + text + surface(look) + flags +
+               (in_mirrors ? seen_directly(look) : " no_reflection") + " }\n";
+        if (in_mirrors && look.twin != no_index)
             out += "  " + text + surface(plan.looks[look.twin]) + seen_in_mirrors + " }\n";
     }
 
@@ -102,7 +103,7 @@ struct Writer {
         title(plane.name);
         const Vec3 normal = plane.normal.normalized();
         shape("plane { " + sdl::vector(normal) + ", " + number(normal.dot(plane.point)), look,
-              plane.casts_shadow);
+              plane.in_mirrors, plane.casts_shadow ? "" : " no_shadow");
     }
 
     void objects() {
@@ -117,8 +118,9 @@ struct Writer {
 
     std::size_t object_count() const {
         std::size_t count = 0;
-        for (const std::vector<Index>* shapes : {&plan.spheres, &plan.planes})
-            for (const Index look : *shapes) count += has_twin(look) ? 2 : 1;
+        for (const Index look : plan.spheres) count += has_twin(look) ? 2 : 1;
+        for (std::size_t i = 0; i < scene.planes.size(); ++i)
+            count += has_twin(plan.planes[i]) && scene.planes[i].in_mirrors ? 2 : 1;
         for (std::size_t i = 0; i < scene.instances.size(); ++i) {
             const MeshPlan& mesh = plan.meshes[scene.instances[i].mesh];
             if (is_drawn(mesh)) count += (needs_shadow(i) ? 2 : 1) + (has_twin(mesh.look) ? 1 : 0);

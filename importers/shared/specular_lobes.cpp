@@ -13,9 +13,9 @@ namespace penumbra {
 
 namespace {
 
-constexpr float no_metal = 0.002F;  // less than half a step of an 8-bit image
-constexpr int most_lobes = 8;
-constexpr double lobe_step = 0.1;  // of roughness
+constexpr float no_metal = 0.002F;              // less than half a step of an 8-bit image
+constexpr int most_lobes = 8, most_steps = 16;  // mixed, and one at a time
+constexpr double lobe_step = 0.1;               // of roughness
 constexpr std::size_t most_texels = std::size_t(64) << 20;
 
 double largest(const Color& c) { return double(std::max({c.x, c.y, c.z})); }
@@ -130,13 +130,15 @@ struct Levels {
     float low = 0, high = 0;
     int count = 1;
 
-    explicit Levels(const TexelSource& roughness) {
+    Levels(const TexelSource& roughness, Illumination illumination) {
         const auto range = range_of(roughness);
         low = std::clamp(range[0], 0.0F, 1.0F);
         high = std::clamp(range[1], 0.0F, 1.0F);
         if (high - low < no_metal) return;
-        count =
-            std::clamp(1 + int(std::ceil(double(high - low) / lobe_step - 1e-4)), 2, most_lobes);
+        const bool mixed = illumination == Illumination::lamps;
+        const double step = mixed ? lobe_step : lobe_step / 2;
+        count = std::clamp(1 + int(std::ceil(double(high - low) / step - 1e-4)), 2,
+                           mixed ? most_lobes : most_steps);
     }
     double roughness(int lobe) const {
         return count == 1 ? double(low + high) / 2
@@ -154,7 +156,7 @@ struct Levels {
 
 // Nothing is metal: what is reflected is the same everywhere, if more or less sharply.
 LobeImages bake_roughness(const LobeMaps& maps) {
-    const Levels levels(maps.roughness);
+    const Levels levels(maps.roughness, maps.illumination);
     const DielectricReflectance dielectric = *reflectance_of(maps);
     const Color f0 = dielectric.f0;
     const bool tinted = !dielectric.plain();
@@ -203,7 +205,7 @@ LobeImages bake_specular_lobes(const LobeMaps& maps) {
     if (keeps_base(maps)) return bake_roughness(maps);
     const Resized base(maps.base, maps, size), metallic(maps.metallic, maps, size),
         roughness(maps.roughness, maps, size), specular(maps.specular, maps, size);
-    const Levels levels(maps.roughness);
+    const Levels levels(maps.roughness, maps.illumination);
     LobeImages images = {.level = levels.image(maps.roughness)};
     images.reflected = filled(size, [&](int x, int y) {
         return bytes_of(mixed(specular.color(x, y), base.color(x, y),
@@ -235,6 +237,7 @@ LobeImages bake_specular_lobes(const LobeMaps& maps) {
 void lay_specular_lobes(Material& material, SpecularLobes specular_lobes, const ImageMap& scattered,
                         const DielectricReflectance& dielectric, Illumination illumination) {
     material.specular_lobes = std::move(specular_lobes);
+    material.specular_lobes->mixed = illumination == Illumination::lamps;
     material.specular = 0;
     material.reflection = Color(0);
     material.metallic = 0;

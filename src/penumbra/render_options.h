@@ -11,8 +11,8 @@ namespace penumbra {
 /// at most. A pixel is the mean of its quarters, and these of theirs.
 struct Antialiasing {
     /// Corners differ where |dR| + |dG| + |dB| is as large, of linear channels to the power 1/2.5.
-    double threshold = 0.1;
-    int depth = 3;  ///< 1 to 9: a pixel has 2^(depth - 1) cells a side at most
+    double threshold = 0.2;
+    int depth = 2;  ///< 1 to 9: a pixel has 2^(depth - 1) cells a side at most
 };
 
 /// Where rays go through a pixel; the same for the tracer and for POV-Ray.

@@ -94,11 +94,12 @@ struct SpecularLobe {
 /// Images that vary highlight and mirror over an opaque mesh, in place of Material's specular,
 /// shininess and reflection: `color` takes the place of P, or of specular_color, in the tint M of
 /// both; `level`'s first channel, in [0, 1], chooses between `lobes`, which are spaced evenly over
-/// it and mixed linearly.
+/// it and mixed linearly; or else, which takes half the rays, the nearest is shown.
 struct SpecularLobes {
     ImageMap color = {};                   ///< no texture: P stays
     ImageMap level = {};                   ///< no texture: lobes[0] alone; the texture is linear
     std::vector<SpecularLobe> lobes = {};  ///< 1 to 16
+    bool mixed = true;
 };
 
 /// A tangent-space normal map (glTF 2.0, section 3.9.3) over a mesh with tangents; `scale` is that
@@ -236,6 +237,7 @@ struct Plane {
     Index material = no_index;
     bool backdrop = false;  ///< see Instance
     bool casts_shadow = true;
+    bool in_mirrors = true;  ///< rays that were mirrored see it
 };
 
 /// f_a = 2 / (1 + (d / distance)^power), d the distance to the source: POV-Ray's

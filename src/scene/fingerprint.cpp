@@ -86,8 +86,8 @@ class Hasher {
         add_all(specular, shininess, reflection, roughness);
     }
     void add(const SpecularLobes& specular_lobes) {
-        const auto& [color, level, lobes] = specular_lobes;
-        add_all(color, level, lobes);
+        const auto& [color, level, lobes, mixed] = specular_lobes;
+        add_all(color, level, lobes, mixed);
     }
     void add(const NormalMap& normal_map) {
         const auto& [map, scale] = normal_map;
@@ -137,9 +137,9 @@ class Hasher {
         add_all(name, center, radius, material);
     }
     void add(const Plane& plane) {
-        const auto& [name, point, normal, material, backdrop, casts_shadow] = plane;
+        const auto& [name, point, normal, material, backdrop, casts_shadow, in_mirrors] = plane;
         static_cast<void>(backdrop);
-        add_all(name, point, normal, material, casts_shadow);
+        add_all(name, point, normal, material, casts_shadow, in_mirrors);
     }
     void add(const Attenuation& attenuation) {
         const auto& [distance, power] = attenuation;

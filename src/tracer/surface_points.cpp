@@ -163,6 +163,7 @@ LobeMix lobes_at(const PreparedScene& prepared, const SpecularLobes& specular_lo
     const double last = double(specular_lobes.lobes.size() - 1);
     const double level =
         std::clamp(image_at(prepared, specular_lobes.level, texcoord).x, 0.0, 1.0) * last;
+    if (!specular_lobes.mixed) return {Index(std::lround(level)), 0};
     const double first = std::min(std::floor(level), last - 1);
     return {Index(first), level - first};
 }

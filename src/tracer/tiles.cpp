@@ -51,6 +51,10 @@ struct Workspace {
     Generation current, next;
     Hits hits;
     std::vector<Index> shapes;  // scratch
+    struct {
+        std::vector<double> t;
+        std::vector<Index> object;
+    } before;  // hits, scratch
     SurfacePoints surfaces;
     std::vector<std::uint64_t> order, sorted;  // of the rays that hit: a key and the ray
     std::vector<std::size_t> ray_of;           // surface point -> ray
@@ -116,9 +120,23 @@ void primary_rays(const Job& job, const PictureTile& tile, const PixelSample& sa
     }
 }
 
+// Of a plane that rays which were mirrored do not see.
+void find_hits_on_unmirrored(const PreparedScene& prepared, std::size_t plane, Workspace& work) {
+    const Generation& rays = work.current;
+    work.before = {work.hits.t, work.hits.object};
+    closest_on_plane(prepared, plane, rays.rays, work.hits);
+    for (std::size_t i = 0; i < rays.rays.count; ++i) {
+        if (!rays.paths[i].mirrored) continue;
+        work.hits.t[i] = work.before.t[i];
+        work.hits.object[i] = work.before.object[i];
+    }
+}
+
 void find_hits(const PreparedScene& prepared, bool coherent, Workspace& work) {
     work.hits.clear(work.current.rays.count);
     closest_shapes(prepared, work.current.rays, work.hits, work.shapes);
+    for (std::size_t k = 0; k < prepared.planes.size(); ++k)
+        if (!prepared.scene.planes[k].in_mirrors) find_hits_on_unmirrored(prepared, k, work);
     prepared.facets->closest(work.current.rays, work.hits, coherent);
 }
 

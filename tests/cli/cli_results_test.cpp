@@ -61,7 +61,7 @@ TEST_CASE("render and export anti-alias unless they are told where rays go") {
         return test::read(folder / "a.exr");
     };
     const std::string plain = picture({});
-    CHECK(plain == picture({"--antialias", "0.1", "--antialias-depth", "3"}));
+    CHECK(plain == picture({"--antialias", "0.2", "--antialias-depth", "2"}));
     CHECK(plain == picture({"--samples", "3", "--antialias-depth", "3"}));
     CHECK(plain != picture({"--samples", "1"}));
     CHECK(plain != picture({"--antialias-depth", "1"}));

@@ -111,13 +111,13 @@ void CommandOptions::declare_sampling() {
                               one ? " (1)" : ""));
     setting("--antialias", "X",
             fmt::format("More samples where a pixel's corners differ by X or more{}",
-                        one ? "" : " (0.1)"),
+                        one ? "" : " (0.2)"),
             [](const std::string& text) {
                 return fmt::format("render.antialias={}",
                                    read_number("--antialias", text, {0, 1000}));
             });
     whole_setting("--antialias-depth", "antialias_depth", 9,
-                  "Of these: cut a pixel into 2^(N-1) x 2^(N-1) cells at most (3)");
+                  "Of these: cut a pixel into 2^(N-1) x 2^(N-1) cells at most (2)");
 }
 
 }  // namespace penumbra::cli

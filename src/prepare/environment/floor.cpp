@@ -48,7 +48,8 @@ void give_floor(Scene& scene) {
                             .point = point,
                             .material = Index(scene.materials.size() - 1),
                             .backdrop = true,
-                            .casts_shadow = false});
+                            .casts_shadow = false,
+                            .in_mirrors = false});
 }
 
 }  // namespace penumbra

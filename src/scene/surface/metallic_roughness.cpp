@@ -50,7 +50,9 @@ namespace penumbra {
 //             (energy by its directional albedo), with the mirrors as they are and h <= 0.2.
 //
 // The reflectance F at normal incidence tints mirror and highlight as Material::specular_color with
-// metallic = 1; the curve of that tint rises to 1 in grazing light much as Schlick's does. What is
+// metallic = 1; the curve of that tint rises to 1 in grazing light much as Schlick's does. Of a
+// dielectric, which reflects 1/25, a blurred image would cost as many rays as that of a metal: from
+// a roughness of 0.25 on it fades, and its part goes to the highlight. What is
 // not metal loses by Material::conserve_energy what the mirror reflects; it scatters (1 - F) of its
 // base colour and the even part of F.
 
@@ -59,11 +61,17 @@ constexpr double faintest = 0.004;
 
 namespace {
 
-constexpr double sharpest = 0.1;  // of mirrors that are blurred: below nobody sees it
+constexpr double sharpest = 0.1;             // of mirrors that are blurred: below nobody sees it
+constexpr double dull = 0.25, duller = 0.4;  // where the image of a dielectric fades out
 
-RoughnessLobe lobe_of_illumination(double r, double a) {
+RoughnessLobe lobe_of_illumination(double r, double a, bool metal) {
     const double lobe = std::min(0.2, 4 * r * r), even = std::min(1.0, 1.3 * r * r);
-    const double highlight = std::min(lobe, 1 - even), sharp = 1 - even - highlight;
+    double highlight = std::min(lobe, 1 - even), sharp = 1 - even - highlight;
+    if (!metal) {
+        const double kept = std::clamp((duller - r) / (duller - dull), 0.0, 1.0);
+        highlight += sharp * (1 - kept);
+        sharp *= kept;
+    }
     const double exponent = std::clamp(1.25 / (a * a) - 1, 1.0, 10000.0);
     return {.highlight = highlight * (exponent + 1) / 2,
             .exponent = exponent,
@@ -75,10 +83,10 @@ RoughnessLobe lobe_of_illumination(double r, double a) {
 
 }  // namespace
 
-RoughnessLobe lobe_of_roughness(double roughness, Illumination illumination) {
+RoughnessLobe lobe_of_roughness(double roughness, Illumination illumination, bool metal) {
     const double r = std::clamp(roughness, 0.0, 1.0);
     const double a = std::pow(std::max(r, 0.045), 2);
-    if (illumination == Illumination::environment) return lobe_of_illumination(r, a);
+    if (illumination == Illumination::environment) return lobe_of_illumination(r, a, metal);
     return {.highlight = 1 / (4 * a * a),
             .exponent = std::clamp(0.676 / (a * a) - 1.17, 1.0, 10000.0),
             .sharp = std::pow(std::max(0.0, 1 - r / 0.6), 2)};
@@ -93,7 +101,8 @@ double scattered(const RoughnessLobe& shape, double metallic, double f0, double 
 
 SpecularLobe full_lobe(double roughness, double limit, double strongest,
                        Illumination illumination) {
-    const RoughnessLobe shape = lobe_of_roughness(roughness, illumination);
+    const bool metal = strongest > 0.2;
+    const RoughnessLobe shape = lobe_of_roughness(roughness, illumination, metal);
     if (illumination == Illumination::environment)
         return {.specular = float(shape.highlight),
                 .shininess = float(shape.exponent),
@@ -190,7 +199,8 @@ void set_scattered(Material& material, const RoughnessLobe& shape, double metall
 // In light from all around.
 void set_surrounded(Material& material, double metallic, double roughness,
                     const DielectricReflectance& dielectric) {
-    const RoughnessLobe shape = lobe_of_roughness(roughness, Illumination::environment);
+    const bool metal = metallic > 0 || dielectric.metal > 0;
+    const RoughnessLobe shape = lobe_of_roughness(roughness, Illumination::environment, metal);
     const Color base = material.color;
     material.specular = float(shape.highlight);
     material.shininess = float(shape.exponent);

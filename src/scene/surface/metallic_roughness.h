@@ -17,7 +17,9 @@ struct RoughnessLobe {
     double even = 0;       ///< the part that a metal scatters evenly, where light is all around
     Illumination illumination = Illumination::lamps;
 };
-RoughnessLobe lobe_of_roughness(double roughness, Illumination illumination);
+/// `metal`: of what reflects strongly; else the faint blurred image of a rough dielectric is left
+/// to its other terms.
+RoughnessLobe lobe_of_roughness(double roughness, Illumination illumination, bool metal = true);
 
 /// What a surface that is not metal reflects at normal incidence.
 struct DielectricReflectance {

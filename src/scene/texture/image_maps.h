@@ -29,7 +29,7 @@ void each_image_map(AnyMaterial& material, Visit visit) {
         visit(map, MapUse::alpha);
     }
     if (specular_lobes) {
-        auto& [tint, level, lobes] = *specular_lobes;
+        auto& [tint, level, lobes, mixed] = *specular_lobes;
         visit(tint, MapUse::lobe_color);
         visit(level, MapUse::lobe_level);
     }

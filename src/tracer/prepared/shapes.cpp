@@ -199,11 +199,15 @@ void closest_shapes(const PreparedScene& prepared, const Rays& rays, Hits& hits,
         std::iota(scratch.begin(), scratch.end(), prepared.first_sphere());
         nearest_spheres(prepared, rays, scratch, 0, rays.count, hits);
     }
-    Index object = prepared.first_plane();
-    for (const PreparedPlane& plane : prepared.planes)
-        nearest_on_plane(plane.frame.normal, plane.distance, Vec3View(rays.origin),
-                         Vec3View(rays.direction), rays.count, object++, hits.t.data(),
-                         hits.object.data());
+    for (std::size_t k = 0; k < prepared.planes.size(); ++k)
+        if (prepared.scene.planes[k].in_mirrors) closest_on_plane(prepared, k, rays, hits);
+}
+
+void closest_on_plane(const PreparedScene& prepared, std::size_t k, const Rays& rays, Hits& hits) {
+    const PreparedPlane& plane = prepared.planes[k];
+    nearest_on_plane(plane.frame.normal, plane.distance, Vec3View(rays.origin),
+                     Vec3View(rays.direction), rays.count, prepared.first_plane() + Index(k),
+                     hits.t.data(), hits.object.data());
 }
 
 void block_by_shapes(const PreparedScene& prepared, std::span<const Index> objects,

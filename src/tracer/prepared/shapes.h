@@ -23,6 +23,10 @@ Crossings cross_plane(const PreparedPlane& plane, const Vec3& origin, const Vec3
 void closest_shapes(const PreparedScene& prepared, const Rays& rays, Hits& hits,
                     std::vector<Index>& scratch);
 
+/// The same with plane `k` of the scene alone; closest_shapes() leaves those out that are not seen
+/// in mirrors.
+void closest_on_plane(const PreparedScene& prepared, std::size_t k, const Rays& rays, Hits& hits);
+
 /// Sets visible[i] to 0 where one of the spheres and planes `objects`, all of them opaque, blocks
 /// shadow ray i, for i in `range`. A ray never meets the plane again that it starts on.
 void block_by_shapes(const PreparedScene& prepared, std::span<const Index> objects,

@@ -67,7 +67,7 @@ TEST_CASE("[render] says where rays go through a pixel") {
     CHECK(adaptive.render.antialiasing->depth == 3);
     const Imported deep = load("[render]\nantialias_depth = 5");
     REQUIRE(deep.render.antialiasing);
-    CHECK(deep.render.antialiasing->threshold == 0.1);
+    CHECK(deep.render.antialiasing->threshold == 0.2);
     CHECK(deep.render.antialiasing->depth == 5);
 }
 
