@@ -14,7 +14,7 @@ namespace penumbra {
 namespace {
 
 constexpr float no_metal = 0.002F;              // less than half a step of an 8-bit image
-constexpr int most_lobes = 8, most_steps = 16;  // mixed, and one at a time
+constexpr int most_lobes = 8, most_steps = 32;  // mixed, and one at a time
 constexpr double lobe_step = 0.1;               // of roughness
 constexpr std::size_t most_texels = std::size_t(64) << 20;
 
@@ -136,7 +136,7 @@ struct Levels {
         high = std::clamp(range[1], 0.0F, 1.0F);
         if (high - low < no_metal) return;
         const bool mixed = illumination == Illumination::lamps;
-        const double step = mixed ? lobe_step : lobe_step / 2;
+        const double step = mixed ? lobe_step : lobe_step / 4;
         count = std::clamp(1 + int(std::ceil(double(high - low) / step - 1e-4)), 2,
                            mixed ? most_lobes : most_steps);
     }

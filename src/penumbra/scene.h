@@ -98,7 +98,7 @@ struct SpecularLobe {
 struct SpecularLobes {
     ImageMap color = {};                   ///< no texture: P stays
     ImageMap level = {};                   ///< no texture: lobes[0] alone; the texture is linear
-    std::vector<SpecularLobe> lobes = {};  ///< 1 to 16
+    std::vector<SpecularLobe> lobes = {};  ///< 1 to 32
     bool mixed = true;
 };
 

@@ -100,8 +100,8 @@ struct Examiner {
             }
         });
         const std::size_t lobes = m.specular_lobes ? m.specular_lobes->lobes.size() : 1;
-        require(lobes >= 1 && lobes <= 16,
-                fmt::format("{} has {} specular lobes, not 1 to 16", who, lobes));
+        require(lobes >= 1 && lobes <= 32,
+                fmt::format("{} has {} specular lobes, not 1 to 32", who, lobes));
         if (m.specular_lobes)
             for (const SpecularLobe& lobe : m.specular_lobes->lobes)
                 require(lobe.roughness >= 0 && lobe.roughness <= 1,

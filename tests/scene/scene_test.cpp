@@ -210,7 +210,7 @@ TEST_CASE("defects, call the parts of a material as the documents do") {
               "material 'leaf' refers to a missing texture for its alpha map",
               "material 'leaf' refers to a missing texture for its specular lobes' colour",
               "material 'leaf' refers to a missing texture for its specular lobes' level",
-              "material 'leaf' has 0 specular lobes, not 1 to 16",
+              "material 'leaf' has 0 specular lobes, not 1 to 32",
               "material 'leaf' is translucent and has an emission map or specular lobes, which "
               "need it opaque"});
 }
