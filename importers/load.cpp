@@ -185,9 +185,17 @@ void separate_coincident_facets(Imported& result) {
              count});
 }
 
-// Without lights a scene gets an environment, if that is wanted.
-void light_scene(Scene& scene, const LoadOptions& options) {
-    if (options.studio != Studio::black && scene.lights.empty() && !scene.environment) {
+bool says_environment(const Request& request) {
+    bool found = false;
+    request.for_each_layer(
+        [&](const Layer& layer) { found |= layer.table.contains("environment"); });
+    return found;
+}
+
+// Without lights a scene gets an environment, if that is wanted and nobody says that there is none.
+void light_scene(const Request& request, const LoadOptions& options, Scene& scene) {
+    const bool wanted = options.studio != Studio::black && !says_environment(request);
+    if (wanted && scene.lights.empty() && !scene.environment) {
         Environment& studio = set_surroundings(scene, Surroundings::studio);
         studio.sources = options.studio_sources;
         studio.visible = false;
@@ -224,7 +232,7 @@ Bounds lay_layers(const Request& request, const LoadOptions& options, Imported& 
     request.for_each_layer(
         [&](const Layer& layer) { lay_camera(layer, scene, aims, box, aspect); });
     if (!sized && scene.camera != no_index) take_shape(scene.cameras[scene.camera], result.render);
-    light_scene(scene, options);
+    light_scene(request, options, scene);
     complete(scene, aspect);
     separate_coincident_facets(result);
     const Losses parted = part_surfaces(scene);
@@ -244,10 +252,7 @@ struct Laid {
 // are read again.
 Laid lay_well_lit(const Request& request, const LoadOptions& given) {
     LoadOptions options = given;
-    bool surrounded = false;
-    request.for_each_layer(
-        [&](const Layer& layer) { surrounded |= layer.table.contains("environment"); });
-    if (surrounded)
+    if (says_environment(request))
         options.model.illumination = Illumination::environment;
     else if (options.studio != Studio::black)
         options.model.illumination = Illumination::by_model;

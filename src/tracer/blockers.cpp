@@ -47,7 +47,10 @@ void Blockers::find_group(const PreparedScene& prepared, const PointGroups& poin
     group.first_shape = shapes.size();
     const auto add = [&](Index object) {
         group.any = true;
-        if (prepared.material_of(object).opaque) shapes.push_back(object);
+        if (prepared.material_of(object).opaque)
+            shapes.push_back(object);
+        else
+            group.filters = true;
     };
     for (std::size_t k = 0; k < prepared.planes.size(); ++k)
         if (prepared.scene.planes[k].casts_shadow &&
@@ -65,6 +68,8 @@ void Blockers::find_group(const PreparedScene& prepared, const PointGroups& poin
         }
         group.facets =
             facets && visit_boxes(*prepared.facet_boxes, in_shaft, [](Index) { return true; });
+        group.filters |= group.facets && visit_boxes(prepared.translucent_boxes, in_shaft,
+                                                     [](Index) { return true; });
     }
     group.last_shape = shapes.size();
     group.any |= group.facets;

@@ -26,6 +26,7 @@ struct PointGroups {
 struct BlockedBy {
     bool any = false;                             ///< anything, translucent or not
     bool facets = false;                          ///< facets may
+    bool filters = false;                         ///< something translucent may
     std::size_t first_shape = 0, last_shape = 0;  ///< opaque spheres and planes that may
 };
 

@@ -157,10 +157,11 @@ void add_shaded_blocks(const PreparedScene& prepared, const PreparedSource& sour
     prepared.facets->occluded(shadow_rays(surfaces, arrival), work.asked, arrival.share);
     for (const std::size_t index : work.shaded) {
         const Block& block = work.blocks[index];
-        const Vec3Array* filter = prepared.translucent ? &arrival.filter : nullptr;
-        if (prepared.translucent) filter_light(prepared, surfaces, block, work);
-        add_diffuse(source.color, prepared.translucent ? arrival.filtered : surfaces.pigment,
-                    surfaces.diffuse, block, arrival, radiance);
+        const bool filters = work.blockers.groups[index].filters;
+        const Vec3Array* filter = filters ? &arrival.filter : nullptr;
+        if (filters) filter_light(prepared, surfaces, block, work);
+        add_diffuse(source.color, filters ? arrival.filtered : surfaces.pigment, surfaces.diffuse,
+                    block, arrival, radiance);
         if (block.shines) add_highlights(source, surfaces, block, filter, arrival, radiance);
     }
 }

@@ -100,7 +100,7 @@ TEST_CASE("AdaptiveSampler, traces corners once and no more than it needs") {
     for (const Vec3& pixel : plain.pixels) CHECK(Color(pixel) == Color(0.3F, 0.7F, 0.1F));
 
     const auto edge = [](double x, double) { return Color(x > 40.1 ? 1.F : 0.F); };
-    const Sampled one_column = sampled(edge, tile, {});
+    const Sampled one_column = sampled(edge, tile, {0.1, 3});
     CHECK(one_column.different == one_column.points);
     // In one column of pixels 3 new points for each half row and two more, twice.
     CHECK(one_column.points == 33 * 33 + (32 * 3 + 32 + 1) + (64 * 3 + 64 + 1));
@@ -141,7 +141,7 @@ TEST_CASE("render, anti-aliases to the same bytes on any threads and in any rows
 
     // Another setting is another picture, and a shift moves this one.
     RenderOptions other = options;
-    other.antialiasing->depth = 2;
+    other.antialiasing->depth = 3;
     CHECK(tracer.render(other).pixels != one.pixels);
     const Image moved = tracer.render(options, {.dx = 1, .dy = 0});
     for (int y = 0; y < 70; ++y)

@@ -135,7 +135,7 @@ PreparedScene::PreparedScene(const Scene& given, const PreparedScene* earlier, b
       facet_boxes(earlier && facets->same_trees(*earlier->facets)
                       ? earlier->facet_boxes
                       : std::make_shared<BoxTree>(boxes_of_facets(given))),
-      sphere_boxes(boxes_of_spheres(given)),
+      translucent_boxes(boxes_of_translucent_facets(given)), sphere_boxes(boxes_of_spheres(given)),
       surroundings(surroundings_of(*facet_boxes, sphere_boxes)) {
     for (const Material& m : scene.materials) {
         materials.push_back(prepare(m, scene.ambient));

@@ -84,6 +84,7 @@ struct PreparedScene {
     const Scene& scene;
     std::shared_ptr<const FacetAccel> facets;
     std::shared_ptr<const BoxTree> facet_boxes;  ///< around runs of facets
+    BoxTree translucent_boxes;                   ///< around runs of facets that light passes
     BoxTree sphere_boxes;                        ///< items are objects
     Bounds surroundings;  ///< of facets and spheres: their box, twice as large
     std::vector<PreparedMaterial> materials = {};  ///< by material

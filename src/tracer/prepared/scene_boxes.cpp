@@ -43,17 +43,32 @@ Bounds box_of(const Sphere& sphere) {
     return padded({.min = sphere.center - half, .max = sphere.center + half});
 }
 
-BoxTree boxes_of_facets(const Scene& scene) {
+namespace {
+
+template <class Counts>
+BoxTree boxes_of(const Scene& scene, const Counts& counts) {
     const std::size_t run = std::max(least_facets, facet_count(scene) / most_boxes);
     std::vector<std::vector<Bounds>> runs(scene.meshes.size());
     std::vector<BoxedItem> items;
     for (const Instance& instance : scene.instances) {
         const Mesh& mesh = scene.meshes[instance.mesh];
+        if (!counts(mesh)) continue;
         if (runs[instance.mesh].empty()) runs[instance.mesh] = runs_of(mesh, run);
         for (const Bounds& box : runs[instance.mesh])
             items.push_back({.box = padded(transformed(box, instance.transform))});
     }
     return make_box_tree(std::move(items));
+}
+
+}  // namespace
+
+BoxTree boxes_of_facets(const Scene& scene) {
+    return boxes_of(scene, [](const Mesh&) { return true; });
+}
+
+BoxTree boxes_of_translucent_facets(const Scene& scene) {
+    return boxes_of(scene,
+                    [&](const Mesh& mesh) { return !opaque(scene.materials[mesh.material]); });
 }
 
 BoxTree boxes_of_spheres(const Scene& scene) {

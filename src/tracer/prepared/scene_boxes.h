@@ -13,6 +13,9 @@ Bounds box_of(const Sphere& sphere);
 /// Boxes around runs of facets, of all instances.
 BoxTree boxes_of_facets(const Scene& scene);
 
+/// The same of those that let light through.
+BoxTree boxes_of_translucent_facets(const Scene& scene);
+
 /// Boxes around spheres; the items are objects.
 BoxTree boxes_of_spheres(const Scene& scene);
 
