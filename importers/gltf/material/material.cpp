@@ -169,7 +169,7 @@ void MaterialReader::read_alpha() {
         alpha = double(most);
     }
     if (cuts) alpha = alpha < source.alphaCutoff ? 0 : 1;
-    material.opacity = float(alpha);
+    material.opacity = covered = float(alpha);
 }
 
 // With a cutoff it, rather than every texel, is adapted to the factor.
@@ -197,13 +197,14 @@ void MaterialReader::read_emission() {
     if (source.emissiveFactor.size() == 3) material.emission = color_of(source.emissiveFactor);
     if (const auto* strength = extension("KHR_materials_emissive_strength"))
         material.emission *= float(number(*strength, "emissiveStrength", 1));
-    material.emission *= under_coat;
+    // What shines through does not dim it (KHR_materials_transmission).
+    material.emission *= under_coat * covered;
     if (material.emission == Color(0)) return;
     const auto& given = source.emissiveTexture;
     Map map = find(texture_info(given.index, given.texCoord, given.extensions), "emissiveTexture",
                    Loss::approximated);
     if (map.state == Map::State::absent) return;
-    if (map.is_laid() && opaque()) {
+    if (map.is_laid()) {
         map.laid.texture = read_texture(reader, map.texture, true);
         material.emission_map = map.laid;
         note_set(map, [](Material& m) -> ImageMap& { return *m.emission_map; });
@@ -214,13 +215,8 @@ void MaterialReader::read_emission() {
         material.emission = Color(0);
         return;
     }
-    const TexelSource texels =
-        as_shown({.raster = raster_of(reader, map.texture), .srgb = true}, map);
-    const auto even = even_of(texels);
-    material.emission *= even ? *even : penumbra::mean_of(texels);
-    if (map.is_laid() && !even)
-        note_loss(Loss::approximated, "emissiveTexture is replaced by its mean over what the "
-                                      "facets show: the surface is transparent");
+    material.emission *=
+        penumbra::mean_of({.raster = raster_of(reader, map.texture), .srgb = true});
 }
 
 void MaterialReader::read_normal() {

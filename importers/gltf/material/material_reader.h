@@ -41,6 +41,7 @@ struct MaterialReader {
     std::vector<OtherSet> other_sets = {};  ///< of images that have others
     Map base = {};
     double alpha = 1;
+    float covered = 1;       ///< how much there is of the surface, by that alpha alone
     double transmitted = 0;  ///< of the light that the surface does not reflect
     float under_coat = 1;    ///< what a clear coat leaves of the light beneath it
 
