@@ -50,7 +50,6 @@ void drop_maps_of_translucent_materials(Imported& result) {
             map.reset();
         };
         drop(m.specular_lobes, "specular lobes");
-        drop(m.emission_map, "emission map");
         drop(m.diffuse_transmission_map, "diffuse transmission map");
         if (dropped.empty()) continue;
         result.losses.push_back(

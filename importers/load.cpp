@@ -1,6 +1,7 @@
 // All inputs of one picture -> one complete scene.
 #include "base/text/text.h"
 #include "importers/fit_materials.h"
+#include "importers/shared/file_names.h"
 #include "importers/shared/formats.h"
 #include "importers/shared/merge.h"
 #include "importers/sidecar/sidecar.h"
@@ -63,6 +64,7 @@ Request read_request(const std::vector<fs::path>& inputs, const LoadOptions& opt
         request.settings.push_back(read_setting(setting));
     request.for_each_layer([](const Layer& layer) { check_top_level(layer); });
     request.for_each_layer([&](const Layer& layer) { read_placements(layer, request.models); });
+    for (Placement& model : request.models) model.file = find_spelled(model.file);
     return request;
 }
 
@@ -271,7 +273,9 @@ Laid lay_well_lit(const Request& request, const LoadOptions& given) {
 
 }  // namespace
 
-Imported load_scene(const std::vector<fs::path>& inputs, const LoadOptions& options) {
+Imported load_scene(const std::vector<fs::path>& given, const LoadOptions& options) {
+    std::vector<fs::path> inputs;
+    for (const fs::path& input : given) inputs.push_back(find_spelled(input));
     if (inputs.empty() && !options.sidecar) throw Error(Failure::usage, "", "no input is given");
     if (options.penumbra && !(std::isfinite(*options.penumbra) && *options.penumbra >= 0))
         throw Error(Failure::usage, "penumbra",

@@ -60,12 +60,14 @@ constexpr const char* glowing = "adds light: emits the more for being all but tr
 
 Layer glow(const Material& m) {
     return {.pigment = color(white, {.transmit = 1 - veil}),
-            .finish = {.emission = m.emission * (m.opacity / veil)},
+            .finish = {.emission = m.emission / veil},
             .note = glowing};
 }
 
 Layer image_glow(const Plan& plan, const Look& look, const Material& m) {
-    return {.pigment = image_map(plan, look, *m.emission_map, {.transmit = 1 - veil}),
+    const Passing passing = {.transmit = 1 - veil};
+    return {.pigment = m.opacity < 1 ? image_pigment(plan, look, *m.emission_map, passing)
+                                     : image_map(plan, look, *m.emission_map, passing),
             .finish = {.emission = m.emission / veil},
             .note = glowing};
 }
@@ -93,8 +95,9 @@ void add_simple_layers(const Plan& plan, const Look& look, const Material& m,
                           .passing = passing});
     };
     Finish finish = finish_of(m);
-    if (m.emission == black || m.emission_map || m.opacity == 0) return add(finish);
-    if (std::holds_alternative<std::monostate>(m.pattern) && !look.tinted) {
+    if (m.emission == black || m.emission_map) return add(finish);
+    // POV-Ray scales a layer's emission by its opacity.
+    if (std::holds_alternative<std::monostate>(m.pattern) && !look.tinted && m.opacity == 1) {
         if (divide_emission(m.color, m.emission, finish.emission)) return add(finish);
         const bool unseen = m.color == black || (m.ambient == black && m.diffuse == 0);
         if (unseen && m.metallic == 0 && m.transmission == 0) {
@@ -125,7 +128,7 @@ void add_product_layers(const Plan& plan, const Look& look, const Material& m,
         layers.push_back({.pigment = image_pigment(plan, look, *std::get_if<ImageMap>(&m.pattern),
                                                    {.transmit = 1}),
                           .finish = gloss_of(m)});
-    if (m.emission != black && !m.emission_map && m.opacity != 0) layers.push_back(glow(m));
+    if (m.emission != black && !m.emission_map) layers.push_back(glow(m));
 }
 
 // Highlight and mirror in a colour of their own: a transparent layer that wears that colour. Light

@@ -28,11 +28,10 @@ std::string light_title(const Light& light, std::size_t count) {
     return title + ", delta " + number(penumbra.delta) + ")";
 }
 
-std::string interior(const Material& m) {
-    const bool bends = m.ior != 1 && (!opaque(m) || m.fresnel);
+std::string interior(const Material& m, bool passed) {
+    if (!passed && !m.fresnel) return "";
     const bool absorbs = m.absorption && !opaque(m);
-    if (!bends && !absorbs && !m.fresnel) return "";
-    std::string text = " interior { ior " + number(m.ior);
+    std::string text = " interior { ior " + number(opaque(m) && !m.fresnel ? 1 : m.ior);
     if (absorbs)
         text += " fade_distance " + number(float(m.absorption->distance)) +
                 " fade_power 1001 fade_color " + sdl::color(fade_color(*m.absorption));

@@ -20,11 +20,11 @@ struct Writer {
 
     // The material and what else stands in an object, after its transform: patterns in world space
     // must not move with it.
-    std::string surface(const Look& look, bool with_texture = true) const {
+    std::string surface(const Look& look, bool with_texture = true, bool passed = false) const {
         const Material& m = scene.materials[look.material];
         std::string text =
             with_texture ? " texture { " + identifier(plan, "Material", look.name) + " }" : "";
-        return text + interior(m);
+        return text + interior(m, passed || !opaque(m));
     }
 
     void title(const std::string& name) {
@@ -61,14 +61,15 @@ struct Writer {
         if (instance.name != scene.meshes[instance.mesh].name) title(instance.name);
         const std::string where = placement(instance.transform);
         const Look& look = plan.looks[mesh.look];
-        const std::string text = where + surface(look, mesh.tints.empty());
+        const bool passed = plan.backs[index].hidden;
+        const std::string text = where + surface(look, mesh.tints.empty(), passed);
         const bool two = needs_shadow(index);
         object(mesh, look,
                text + backs(index, mesh, look) + (two ? " no_shadow" : "") + seen_directly(look));
         if (look.twin != no_index) {
             const Look& twin = plan.looks[look.twin];
             object(mesh, twin,
-                   where + surface(twin, mesh.tints.empty()) + backs(index, mesh, twin) +
+                   where + surface(twin, mesh.tints.empty(), passed) + backs(index, mesh, twin) +
                        seen_in_mirrors);
         }
         if (two) object(mesh, look, text + " no_image no_reflection");  // the shadow

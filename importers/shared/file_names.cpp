@@ -51,4 +51,6 @@ fs::path find_spelled(const ModelFolders& folders, const fs::path& file) {
     return way;
 }
 
+fs::path find_spelled(const fs::path& file) { return find_spelled({.own = "/"}, file); }
+
 }  // namespace penumbra

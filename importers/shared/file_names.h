@@ -21,4 +21,7 @@ std::string entry_of(const std::filesystem::path& folder, const std::string& nam
 /// Precondition: may_read(folders, file).
 std::filesystem::path find_spelled(const ModelFolders& folders, const std::filesystem::path& file);
 
+/// The same of a file that the user names, who may read everything.
+std::filesystem::path find_spelled(const std::filesystem::path& file);
+
 }  // namespace penumbra

@@ -2,6 +2,7 @@
 #include "base/file.h"
 #include "base/text/suggest.h"
 #include "base/text/text.h"
+#include "importers/shared/file_names.h"
 #include "importers/sidecar/sidecar.h"
 
 #include "penumbra/light_model.h"
@@ -159,7 +160,7 @@ std::vector<std::string> names_of(const std::vector<Material>& materials) {
 
 Index load_texture(Section& section, const std::string& key, const std::string& file, Scene& scene,
                    TextureFiles& files) {
-    const auto path = (section.layer().folder / file).lexically_normal();
+    const auto path = find_spelled((section.layer().folder / file).lexically_normal());
     if (const auto known = files.find(path); known != files.end()) return known->second;
     if (std::error_code ignored; !std::filesystem::exists(path, ignored))
         section.reject(key, fmt::format("is '{}': no such file", printable(path.string())));

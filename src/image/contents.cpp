@@ -1,8 +1,11 @@
 #include "image/contents.h"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace penumbra {
@@ -36,26 +39,56 @@ struct Found {
     std::size_t pictures = 1;
     const char* kind = "";
     bool profile = false;
+    bool gamma = false;  // other than sRGB's
 };
 
-// ICC.1, section 10.15, and the older textDescriptionType: names are ASCII or UTF-16. A profile
-// that is compressed, as in PNG, is known by the name beside it.
+// ICC.1, section 10.15, and the older textDescriptionType: names are ASCII or UTF-16.
 bool names_srgb(std::string_view profile) {
     return profile.find("sRGB"sv) != profile.npos || profile.find("s\0R\0G\0B"sv) != profile.npos;
 }
 
-// PNG specification, third edition: chunks; acTL is in front of the pixels.
+// What a zlib stream holds, up to the size of any profile that describes a display.
+std::string inflated(std::string_view data) {
+    std::string result(std::size_t(1) << 20, '\0');
+    z_stream stream{};
+    if (inflateInit(&stream) != Z_OK) return {};
+    // zlib takes what it only reads as changeable.
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(data.data()));
+    stream.avail_in = uInt(data.size());
+    stream.next_out = reinterpret_cast<Bytef*>(result.data());
+    stream.avail_out = uInt(result.size());
+    inflate(&stream, Z_FINISH);
+    result.resize(stream.total_out);
+    inflateEnd(&stream);
+    return result;
+}
+
+// iCCP: a name, a zero, the method, and the profile, which says what it is itself; what cannot be
+// unpacked is known by its name.
+bool names_srgb_packed(std::string_view chunk) {
+    const std::size_t name = std::min(chunk.find('\0'), chunk.size());
+    if (names_srgb(chunk.substr(0, name))) return true;
+    return name + 2 < chunk.size() && names_srgb(inflated(chunk.substr(name + 2)));
+}
+
+// PNG specification, third edition: chunks; acTL is in front of the pixels. gAMA counts in hundred
+// thousandths, sRGB and a profile have precedence over it.
 Found in_png(const Bytes& file) {
+    constexpr std::uint64_t srgb_gamma = 45455, slack = 500;
     Found found = {.kind = "frames"};
+    bool told = false;
     for (std::uint64_t at = 8; at + 8 <= file.text.size();) {
         const std::uint64_t size = file.number(at, 4);
         const std::string_view type = file.part(at + 4, 4);
         if (type == "acTL") found.pictures = std::size_t(file.number(at + 8, 4));
-        if (type == "iCCP")
-            found.profile = !names_srgb(file.part(at + 8, std::min<std::uint64_t>(size, 80)));
+        if (type == "iCCP") found.profile = !names_srgb_packed(file.part(at + 8, size));
+        if (type == "iCCP" || type == "sRGB") told = true;
+        if (const std::uint64_t gamma = file.number(at + 8, 4); type == "gAMA")
+            found.gamma = gamma + slack < srgb_gamma || gamma > srgb_gamma + slack;
         if (type == "IDAT") break;
         at += 12 + size;
     }
+    found.gamma = found.gamma && !told;
     return found;
 }
 
@@ -206,6 +239,9 @@ Contents contents_of(std::span<const std::byte> file) {
     if (found.profile)
         result.unread.emplace_back(
             "has a colour profile (ICC) other than sRGB, and its samples are taken as sRGB");
+    if (found.gamma)
+        result.unread.emplace_back(
+            "has a gamma (gAMA) other than that of sRGB, and its samples are taken as sRGB");
     return result;
 }
 

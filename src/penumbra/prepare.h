@@ -49,7 +49,7 @@ Losses bake_normal_maps(Scene& scene, const NormalMapBudget& budget = {});
 /// Removes all normal maps; a loss for each material.
 Losses drop_normal_maps(Scene& scene);
 
-/// Of opaque facets that lie exactly on one another leaves the first: which of them a ray hits
+/// Of opaque facets that lie exactly on one another leaves the last: which of them a ray hits
 /// would be a matter of rounding. Instances that share a mesh get one of their own where others
 /// want it whole. Returns how many facets went. Precondition: the indices of instances, facets and
 /// materials are in range.

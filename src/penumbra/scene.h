@@ -166,7 +166,7 @@ struct Material {
     /// What the mirrors reflect is taken from the other terms but what lies behind: they are
     /// multiplied by 1 - reflectance for each mirror. Of opaque surfaces without `fresnel`.
     bool conserve_energy = false;
-    Color emission = Color(0);  ///< radiance, not multiplied by P
+    Color emission = Color(0);  ///< radiance, multiplied neither by P nor by the opacity
     /// K_T per channel, not multiplied by P: light from behind that is scattered to the eye.
     Color diffuse_transmission = Color(0);
     float opacity = 1;       ///< [0, 1]
@@ -178,7 +178,7 @@ struct Material {
     std::optional<Coat> coat = {};
     // Of meshes only:
     Sides sides = Sides::both;
-    std::optional<ImageMap> emission_map = {};  ///< times `emission`; the surface must be opaque
+    std::optional<ImageMap> emission_map = {};  ///< times `emission`
     /// Times `diffuse_transmission`; the surface must be opaque.
     std::optional<ImageMap> diffuse_transmission_map = {};
     std::optional<AlphaMap> alpha_map = {};

@@ -85,10 +85,11 @@ std::size_t drop_coincident_facets(Scene& scene) {
     const std::vector<Placed> facets = suspects(local, asked);
     std::map<Index, std::vector<Index>> dropped;  // by instance
     std::size_t count = 0;
-    for (std::size_t i = 1, first = 0; i < facets.size(); ++i) {
-        if (facets[i].hash != facets[first].hash) first = i;
-        if (first == i || !shows_all_of(scene, facets[first], facets[i]) ||
-            !same_corners(corners(local, facets[first]), corners(local, facets[i])))
+    // The last one stays, as viewers draw it over the others.
+    for (std::size_t i = facets.size(), last = i; i-- > 0;) {
+        if (last == facets.size() || facets[i].hash != facets[last].hash) last = i;
+        if (last == i || !shows_all_of(scene, facets[last], facets[i]) ||
+            !same_corners(corners(local, facets[last]), corners(local, facets[i])))
             continue;
         dropped[facets[i].instance].push_back(facets[i].facet);
         ++count;

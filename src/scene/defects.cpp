@@ -106,9 +106,8 @@ struct Examiner {
             for (const SpecularLobe& lobe : m.specular_lobes->lobes)
                 require(lobe.roughness >= 0 && lobe.roughness <= 1,
                         who + " has a specular lobe with a roughness outside [0, 1]");
-        require(m.opacity == 1 || (!m.emission_map && !m.specular_lobes),
-                who + " is translucent and has an emission map or specular lobes, which need it "
-                      "opaque");
+        require(m.opacity == 1 || !m.specular_lobes,
+                who + " is translucent and has specular lobes, which need it opaque");
         require(m.opacity == 1 || !m.diffuse_transmission_map,
                 who + " is translucent and has an image of diffuse transmission, which needs it "
                       "opaque");

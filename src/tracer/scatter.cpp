@@ -202,9 +202,13 @@ MediumStack media_at(const PreparedScene& prepared, const Vec3& eye, Media& medi
         const Index twin = prepared.medium_of(object, true);
         if (twin != object) media.toggle(inside, twin);
     };
-    // Where the eye is out of reach of all facets there are none.
-    for (Index i = 0; i < prepared.first_sphere() && !prepared.facets->empty(); ++i)
-        if (prepared.material_of(i).passes && encloses(prepared.facets->placed(i), eye)) enter(i);
+    // Where the eye is out of reach of all facets there are none. What rays may go on behind has an
+    // interior in the export.
+    for (Index i = 0; i < prepared.first_sphere() && !prepared.facets->empty(); ++i) {
+        const PlacedMesh& placed = prepared.facets->placed(i);
+        if ((!prepared.material_of(i).opaque || placed.backs.hidden) && encloses(placed, eye))
+            enter(i);
+    }
     for (std::size_t i = 0; i < scene.spheres.size(); ++i)
         if ((eye - scene.spheres[i].center).length() < scene.spheres[i].radius)
             enter(prepared.first_sphere() + Index(i));

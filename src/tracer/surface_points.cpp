@@ -188,8 +188,8 @@ void apply_maps(const PreparedScene& prepared, const Geometry& g, const Prepared
             surfaces.tint.set(slot, image_at(prepared, given.specular_lobes->color, g.texcoord));
     }
     surfaces.alpha[slot] = alpha;
-    surfaces.emitted.set(slot, (surfaces.pigment[slot] * material.ambient + emission) *
-                                   (material.opacity * alpha));
+    surfaces.emitted.set(
+        slot, (surfaces.pigment[slot] * material.ambient * material.opacity + emission) * alpha);
     surfaces.diffuse[slot] = material.diffuse * material.opacity * alpha;
 }
 
@@ -217,7 +217,8 @@ bool meets_hidden_back(const PreparedScene& prepared, const Hit& hit, const Geom
 
 // A surface that is not there, as a hole of an AlphaMap.
 void leave_out(const PreparedMaterial& material, SurfacePoints& surfaces, std::size_t slot) {
-    for (Vec3Array* light : {&surfaces.pigment, &surfaces.tint, &surfaces.emitted})
+    for (Vec3Array* light :
+         {&surfaces.pigment, &surfaces.tint, &surfaces.emitted, &surfaces.from_behind})
         light->set(slot, Vec3(0));
     surfaces.transmittance.set(slot, Vec3(1));
     surfaces.diffuse[slot] = surfaces.alpha[slot] = 0;
@@ -236,7 +237,7 @@ void show(const PreparedScene& prepared, const PreparedMaterial& material, const
     const Vec3 pigment = pigment_of(material, base, g);
     surfaces.pigment.set(slot, pigment);
     surfaces.tint.set(slot, tint_of(material, base, pigment));
-    surfaces.emitted.set(slot, (pigment * material.ambient + material.emission) * material.opacity);
+    surfaces.emitted.set(slot, pigment * material.ambient * material.opacity + material.emission);
     surfaces.diffuse[slot] = material.diffuse * material.opacity;
     surfaces.alpha[slot] = 1;
     surfaces.lobes[slot] = {};

@@ -108,6 +108,27 @@ TEST_CASE("a report replaces and removes no input") {
           2);
 }
 
+TEST_CASE("a report replaces no files of others unless it is told to") {
+    const TempDir folder;
+    write(folder / "a.ppm", ppm(40, 30, 100));
+    write(folder / "b.ppm", ppm(40, 30, 101));
+    const char* const theirs = GENERATE("index.html", "flip.png");
+    write(folder / theirs, "mine");
+    const Words words = {"compare", "a.ppm", "b.ppm", "--report", "."};
+    const Ended ended = run(folder.path, words);
+    CHECK(ended.status == 4);
+    CHECK(ended.err == std::string("penumbra: error: ./") + theirs +
+                           ": is there already, and not from a report; give the report another "
+                           "folder (or replace it with --force)\n");
+    CHECK(read(folder / theirs) == "mine");
+    CHECK(entries(folder.path) == 3);
+    Words forced = words;
+    forced.push_back("--force");
+    CHECK(run(folder.path, forced).status < 2);
+    CHECK(read(folder / theirs) != "mine");
+    CHECK(run(folder.path, words).status < 2);  // over an earlier report
+}
+
 TEST_CASE("a report of several scenes removes no folder that holds an input") {
     if (!has_povray()) PENUMBRA_SKIP("POV-Ray is not installed");
     const TempDir folder;

@@ -51,8 +51,8 @@ TEST_CASE("pov sides, are those that POV-Ray knows unless a material says otherw
 TEST_CASE("pov sides, of flat facets are an interior texture and the corners' order") {
     const Text text = text_of(wall());
     CHECK(holds(text.scene, "#declare Nothing = texture { pigment { rgbt 1 }"));
-    CHECK(holds(text.scene, "object { Mesh_wall texture { Material_clay } interior_texture { "
-                            "Nothing } }"));
+    CHECK(holds(text.scene, "object { Mesh_wall texture { Material_clay } interior { ior 1 } "
+                            "interior_texture { Nothing } }"));
     CHECK(holds(text.geometry, "<0,2,1>, <0,3,2>"));
 }
 
@@ -66,8 +66,8 @@ TEST_CASE("pov sides, of smooth facets depend on the angle of incidence") {
 TEST_CASE("pov sides, of vertex colours need a texture beside them") {
     Scene scene = wall();
     scene.meshes[0].colors = {Color(1), Color(0), Color(1), Color(0)};
-    CHECK(holds(text_of(scene).scene,
-                "Mesh_wall texture { pigment { rgb 0 } } interior_texture { Nothing } }"));
+    CHECK(holds(text_of(scene).scene, "Mesh_wall interior { ior 1 } texture { pigment { rgb 0 } } "
+                                      "interior_texture { Nothing } }"));
     lean(scene.meshes[0], 1);
     CHECK_FALSE(holds(text_of(scene).scene, "interior_texture"));
 }

@@ -110,6 +110,28 @@ Feature shared_meshes(const std::string& name, const json& first, const json& se
     return told(staged(name, gltf), loss);
 }
 
+// A sheet whose picture lies on itself.
+Feature folded() {
+    Shape shape = sheet(-1.5F, 0.1F, 1.2F, 1.8F);
+    for (const auto& [x, y] : {std::pair{-0.6F, 0.4F}, {-0.7F, 1.5F}})
+        shape.positions.insert(shape.positions.end(), {x, y, 0.07F - 0.3F * y + 0.11F * x});
+    shape.texcoords.insert(shape.texcoords.end(), {0.2F, 1.3F, 0.9F, 1.6F});
+    for (const int corner : {1, 4, 5, 1, 5, 2}) shape.indices.push_back(std::uint16_t(corner));
+    Gltf gltf = painted({{shape, wall_paint}});
+    gltf.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] =
+        texture(gltf, "picture.png");
+    Feature feature = told(staged("a sheet folded onto itself", gltf), lifted);
+    feature.files["picture.png"] = png();
+    return feature;
+}
+
+// A blended sheet that its mesh has twice.
+Feature twice() {
+    Shape shape = sheet(-1.2F, 0.2F, 1.1F, 1.7F);
+    for (const int corner : {0, 1, 2, 0, 2, 3}) shape.indices.push_back(std::uint16_t(corner));
+    return decal("blended facets twice in a mesh", shape, glaze());
+}
+
 Feature on_the_floor() {
     Shape rug = sheet(0, 0, 0, 0);
     rug.positions = {-1.5F, 0, 1, 1, 0, 1.4F, 1.3F, 0, -1, -1.2F, 0, -0.8F};
@@ -146,6 +168,8 @@ std::vector<Feature> coplanar_features() {
                                                  {sheet(-1.2F, 0.2F, 0.4F, 1.2F), glaze()}})),
                  lifted),
             overlapping_tiles(),
+            folded(),
+            twice(),
             on_the_floor(),
             told(staged("decal with its back to the viewer, on a body",
                         painted({{box(0.7F, 0.1F), wall_paint},

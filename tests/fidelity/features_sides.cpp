@@ -114,6 +114,31 @@ Feature back_to_back(const std::string& name, const std::vector<std::uint16_t>& 
     return feature;
 }
 
+// Two walls that are seen from behind, and a ball of glass after them.
+Feature doll_house() {
+    Gltf gltf;
+    Shape wall;
+    wall.positions = {-1.4F, 0, 1.2F, 1.5F, 0, 1.4F, 1.4F, 1.3F, 1.3F, -1.5F, 1.2F, 1.1F};
+    wall.indices = {0, 2, 1, 0, 3, 2};
+    gltf.add("meshes", {{"primitives", {primitive(gltf, wall, clay())}}});
+    gltf.root["nodes"] = {{{"mesh", 0}},
+                          {{"mesh", 0}, {"translation", {0.3, 0.1, 0.3}}, {"scale", {1, 0.8, 1}}}};
+    gltf.root["scenes"] = {{{"nodes", {0, 1}}}};
+    Stage glass = stage();
+    glass.rest += ball_of("opacity = 0.1\nior = 1.4\ncolor = [0.9, 1, 0.9]\nspecular = 0.5\n");
+    return staged("single-sided, glass seen through two backs", gltf, glass);
+}
+
+// A bowl of paper that is seen from its back and, in a mirror, from its front.
+Feature paper() {
+    json material = clay();
+    material["extensions"]["KHR_materials_diffuse_transmission"] = {
+        {"diffuseTransmissionFactor", 0.6}, {"diffuseTransmissionColorFactor", {0.9, 0.6, 0.3}}};
+    Gltf gltf = showing(pipe(9, false), material);
+    gltf.root["extensionsUsed"].push_back("KHR_materials_diffuse_transmission");
+    return staged("single-sided, diffuse transmission", gltf, stage());
+}
+
 // OBJ shows both sides unless it is told otherwise.
 Feature sides_of_obj() {
     Stage told = stage();
@@ -141,6 +166,8 @@ std::vector<Feature> side_features() {
                          "that lie back to back are moved apart"),
             back_to_back("single-sided, back to back along other diagonals",
                          {1, 0, 3, 4, 1, 3, 2, 1, 4, 5, 2, 4}, "lie in one plane with others"),
+            doll_house(),
+            paper(),
             sides_of_obj()};
 }
 

@@ -116,6 +116,26 @@ Feature into_metal(const std::string& name, const std::string& image, const json
     return feature;
 }
 
+// Glass with a light of its own by an image, all of it clear or the half of a faint one.
+Feature glowing(const std::string& name, bool faint) {
+    Gltf gltf = showing(egg());
+    json material = {{"pbrMetallicRoughness",
+                      {{"baseColorFactor", {0.9, 0.7, 0.5, faint ? 0.5 : 1}},
+                       {"metallicFactor", 0},
+                       {"roughnessFactor", 0}}},
+                     {"alphaMode", faint ? "BLEND" : "OPAQUE"},
+                     {"doubleSided", true},
+                     {"emissiveFactor", {0.9, 0.5, 0.7}}};
+    material["emissiveTexture"] = texture(gltf, "picture.png");
+    if (!faint) material["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 1;
+    gltf.root["extensionsUsed"] = {"KHR_materials_transmission"};
+    gltf.root["materials"] = {material};
+    gltf.root["meshes"][0]["primitives"][0]["material"] = 0;
+    Feature feature = staged(name, gltf, marked_stage());
+    feature.files["picture.png"] = png();
+    return feature;
+}
+
 json smooth_white() {
     return {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}}};
 }
@@ -137,6 +157,12 @@ std::vector<Feature> transparency_features() {
     const json all_of_it = {{"transmissionFactor", 1}};
     return {clear("opacity", "color = [0.2, 0.6, 0.3]\nopacity = 0.4\n"),
             clear("opacity (glTF)", half, json::object()),
+            clear("opacity 0 and emission",
+                  "color = [0.9, 1, 0.8]\nopacity = 0\nemission = [0.3, 0.1, 0.2]\n"),
+            clear("opacity and emission",
+                  "color = [0.2, 0.6, 0.3]\nopacity = 0.4\nemission = [0.3, 0.1, 0.2]\n"),
+            glowing("emission map on clear glass", false),
+            glowing("emission map on a blended surface", true),
             clear("refraction", "color = [1, 1, 1]\nopacity = 0.1\nior = 1.5\n"),
             total_reflection(),
             clear("Fresnel reflection",

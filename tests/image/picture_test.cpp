@@ -84,6 +84,27 @@ TEST_CASE("Pictures, further frames and colour profiles are named") {
           std::vector<std::string>{
               "has a colour profile (ICC) other than sRGB, and its samples are taken as sRGB"});
     CHECK(unread({png, profile("sRGB IEC61966-2.1")}).empty());
+    // A zlib stream without compression: 0x78 0x01, a stored block, Adler-32 left out.
+    const auto packed = [](const std::string& text) {
+        const int size = int(text.size());
+        return together({bytes({0, 0, 0, 5 + 7 + size}), bytes("iCCP"), bytes("icc"), bytes({0, 0}),
+                         bytes({0x78, 1, 1, size, 0, 255 - size, 255}), bytes(text),
+                         bytes({0, 0, 0, 0})});
+    };
+    CHECK(unread({png, packed("desc sRGB built-in")}).empty());
+    CHECK(unread({png, packed("desc Display P3")}).size() == 1);
+
+    const auto gamma = [](int high, int low) {
+        return together({bytes({0, 0, 0, 4}), bytes("gAMA"),
+                         bytes({0, high / 256, high % 256, low}), bytes({0, 0, 0, 0})});
+    };
+    CHECK(
+        unread({png, gamma(0x186, 0xA0)}) ==  // 1.0
+        std::vector<std::string>{"has a gamma (gAMA) other than that of sRGB, and its samples are "
+                                 "taken as sRGB"});
+    CHECK(unread({png, gamma(0xB1, 0x8F)}).empty());
+    const Bytes srgb = together({bytes({0, 0, 0, 1}), bytes("sRGB"), bytes({0, 0, 0, 0, 0})});
+    CHECK(unread({png, srgb, gamma(0x186, 0xA0)}).empty());
 
     const Bytes gif = together(
         {bytes("GIF89a"), bytes({1, 0, 1, 0, 0x80, 0, 0}), bytes({0, 0, 0, 255, 255, 255})});

@@ -118,7 +118,7 @@ TEST_CASE("Facets back to back, are those that show opposite sides") {
 
 TEST_CASE("Facets that show both sides, are kept behind those that show one") {
     Scene scene = two_colors();
-    scene.materials[scene.meshes[1].material].sides = Sides::both;
+    scene.materials[scene.meshes[0].material].sides = Sides::both;
     CHECK(drop_coincident_facets(scene) == 0);
     CHECK(part_surfaces(scene).size() == 1);
     CHECK(in_the_middle(scene) == Color(1, 0, 0));

@@ -84,7 +84,7 @@ TEST_CASE("Far, only facets that lie on one another are dropped") {
         scene.instances.push_back(scene.instances[0]);
         scene.instances[1].mesh = 1;
         CHECK(drop_coincident_facets(scene) == 800);
-        CHECK(scene.meshes[0].triangles.size() == 800);
-        CHECK(scene.meshes[1].triangles.empty());
+        CHECK(scene.meshes[1].triangles.size() == 800);
+        CHECK(scene.meshes[0].triangles.empty());
     }
 }

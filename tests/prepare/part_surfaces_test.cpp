@@ -132,6 +132,49 @@ TEST_CASE("part_surfaces, leaves what shares an edge, looks alike or lies apart"
     check_untouched(scene);
 }
 
+TEST_CASE("part_surfaces, parts a sheet that is folded onto itself") {
+    Scene scene = test::empty_scene();
+    scene.materials = {matte(), colored(1), glazed(), colored(0.2F)};
+    // The second half hangs on the edge from 1 to 2 and lies on the first.
+    add_mesh(scene, {{-6, -6, 0}, {6, -6, 0}, {6, 6, 0}, {-6, 6, 0}, {0, -5, 0}, {0, 5, 0}},
+             {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}});
+    double side = -1;
+    SECTION("of one colour") { return check_untouched(scene); }
+    SECTION("of several colours, to the side that it faces") {
+        scene.meshes[0].colors = {Color(1), Color(1), Color(0), Color(0), Color(1), Color(0)};
+    }
+    SECTION("onto its front") {
+        scene.meshes[0].colors = {Color(1), Color(1), Color(0), Color(0), Color(1), Color(0)};
+        for (std::size_t i = 2; i < 4; ++i)
+            std::swap(scene.meshes[0].triangles[i][1], scene.meshes[0].triangles[i][2]);
+        side = 1;
+    }
+    const Losses losses = part_surfaces(scene);
+    REQUIRE(losses.size() == 1);
+    CHECK(losses[0].count == 2);
+    const Mesh& mesh = scene.meshes[0];
+    CHECK(mesh.positions.size() == 10);
+    CHECK(mesh.colors.size() == 10);
+    for (std::size_t i = 0; i < 4; ++i)
+        for (const Index corner : mesh.triangles[i])
+            CHECK(double(mesh.positions[corner].z) == Approx(i < 2 ? 0 : side * layer));
+}
+
+TEST_CASE("part_surfaces, parts blended facets that a mesh has twice") {
+    Scene scene = wall();
+    scene.meshes[0].material = 2;
+    auto& triangles = scene.meshes[0].triangles;
+    triangles = {{0, 1, 2}, {0, 2, 3}, {0, 1, 2}, {0, 2, 3}};
+    Scene both_sides = scene;
+    for (std::size_t i = 2; i < 4; ++i)
+        std::swap(both_sides.meshes[0].triangles[i][1], both_sides.meshes[0].triangles[i][2]);
+    check_untouched(both_sides);  // the two sides of a sheet
+    CHECK(part_surfaces(scene).at(0).count == 2);
+    REQUIRE(scene.meshes[0].positions.size() == 8);
+    CHECK(double(scene.meshes[0].positions[scene.meshes[0].triangles[0][0]].z) == 0);
+    CHECK(double(scene.meshes[0].positions[scene.meshes[0].triangles[3][0]].z) == Approx(layer));
+}
+
 TEST_CASE("part_surfaces, leaves bodies that touch and what stands on a plane") {
     Scene scene = test::empty_scene();
     scene.materials = {matte(), colored(1)};

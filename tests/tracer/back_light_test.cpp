@@ -69,3 +69,21 @@ TEST_CASE("back light, fades with the surface") {
     scene.lights = {from({0, 0, 1})};
     check(middle(scene), Color(0.5F, 0.1F, 0.2F) * 0.25F);
 }
+
+TEST_CASE("back light, does not show on a back that is not there") {
+    // Tiles on the left see the front of a sheet, those on the right the back of one.
+    Scene scene = sheet();
+    scene.materials[0].sides = Sides::front;
+    scene.meshes.clear();
+    scene.instances.clear();
+    test::add_quad(scene, {-5, -5, 0}, {0, -5, 0}, {0, 5, 0}, {-5, 5, 0});
+    test::add_quad(scene, {0, -5, 0}, {0, 5, 0}, {5, 5, 0}, {5, -5, 0});
+    scene.lights = {from({0, 0, 1}), from({0, 0, -1})};
+    RenderOptions options;
+    options.width = 96;
+    options.height = 32;
+    options.threads = 1;
+    const Image image = render(test::as_is(scene), options);
+    check(image.at(20, 16), {0.55F, 0.15F, 0.65F});
+    for (int x = 49; x < 90; ++x) check(image.at(x, 16), Color(0));
+}

@@ -111,6 +111,8 @@ MaterialReader MaterialReader::part(Look of) const {
                            .source = source,
                            .pointer = pointer,
                            .index = index,
+                           .alone = alone,
+                           .trial = trial,
                            .textured = textured,
                            .one_set = one_set,
                            .look = of};

@@ -72,7 +72,16 @@ const tinygltf::Value* MaterialReader::extension(const std::string& name) const 
 void MaterialReader::note_loss(Loss::Kind kind, const std::string& what) const {
     // All else has been said of the same material with all its images.
     if (!textured || one_set || (said != nullptr && !said->insert(what).second)) return;
+    if (trial != nullptr) {
+        trial->losses.emplace_back(kind, what);
+        return;
+    }
     reader.note_loss_in_material(kind, pointer, what);
+}
+
+void MaterialReader::note_mean(const std::string& what) const {
+    if (trial != nullptr) trial->averaged = true;
+    note_loss(Loss::approximated, what);
 }
 
 MaterialReader::Map MaterialReader::find(const TextureInfo& info, const std::string& name,
@@ -105,14 +114,15 @@ void MaterialReader::note_set(const Map& map, ImageMap& (*member)(Material&)) {
 
 const TexelMask* MaterialReader::shown(int texture, int set, const ImageMap& laid) {
     const auto& t = laid.transform;
-    const std::string key = fmt::format("{} {} {} {} {} {} {} {} {}", index, texture, set, t[0],
-                                        t[1], t[2], t[3], t[4], t[5]);
+    const std::string key =
+        fmt::format("{} {} {} {} {} {} {} {} {} {}", index, static_cast<const void*>(alone),
+                    texture, set, t[0], t[1], t[2], t[3], t[4], t[5]);
     MaterialCache& cache = reader.cache;
     if (const auto known = cache.shown.find(key); known != cache.shown.end())
         return known->second.empty() ? nullptr : &known->second;
     TexelMask& mask = cache.shown[key];
     const Raster* raster = raster_of(reader, texture);
-    const auto facets = cache.facets ? cache.facets(index, set) : std::nullopt;
+    const auto facets = cache.facets ? cache.facets({index, alone}, set) : std::nullopt;
     if (raster == nullptr || !facets || facets->empty()) return nullptr;
     if (auto found =
             texels_under(*facets, laid, frame_of(reader, texture), raster->width, raster->height))
@@ -138,8 +148,7 @@ Color MaterialReader::mean_of(const tinygltf::Value& from, const std::string& ke
     map.laid.transform = transform_of(info);
     const TexelSource texels = as_shown({.raster = raster, .channel = channel, .srgb = srgb}, map);
     if (const auto even = even_of(texels)) return *even;
-    note_loss(Loss::approximated,
-              fmt::format("{} is replaced by its mean over what the facets show", key));
+    note_mean(fmt::format("{} is replaced by its mean over what the facets show", key));
     return penumbra::mean_of(texels);
 }
 
@@ -169,7 +178,7 @@ void MaterialReader::read_alpha() {
         alpha = double(most);
     }
     if (cuts) alpha = alpha < source.alphaCutoff ? 0 : 1;
-    material.opacity = float(alpha);
+    material.opacity = covered = float(alpha);
 }
 
 // With a cutoff it, rather than every texel, is adapted to the factor.
@@ -197,13 +206,14 @@ void MaterialReader::read_emission() {
     if (source.emissiveFactor.size() == 3) material.emission = color_of(source.emissiveFactor);
     if (const auto* strength = extension("KHR_materials_emissive_strength"))
         material.emission *= float(number(*strength, "emissiveStrength", 1));
-    material.emission *= under_coat;
+    // What shines through does not dim it (KHR_materials_transmission).
+    material.emission *= under_coat * covered;
     if (material.emission == Color(0)) return;
     const auto& given = source.emissiveTexture;
     Map map = find(texture_info(given.index, given.texCoord, given.extensions), "emissiveTexture",
                    Loss::approximated);
     if (map.state == Map::State::absent) return;
-    if (map.is_laid() && opaque()) {
+    if (map.is_laid()) {
         map.laid.texture = read_texture(reader, map.texture, true);
         material.emission_map = map.laid;
         note_set(map, [](Material& m) -> ImageMap& { return *m.emission_map; });
@@ -214,13 +224,8 @@ void MaterialReader::read_emission() {
         material.emission = Color(0);
         return;
     }
-    const TexelSource texels =
-        as_shown({.raster = raster_of(reader, map.texture), .srgb = true}, map);
-    const auto even = even_of(texels);
-    material.emission *= even ? *even : penumbra::mean_of(texels);
-    if (map.is_laid() && !even)
-        note_loss(Loss::approximated, "emissiveTexture is replaced by its mean over what the "
-                                      "facets show: the surface is transparent");
+    material.emission *=
+        penumbra::mean_of({.raster = raster_of(reader, map.texture), .srgb = true});
 }
 
 void MaterialReader::read_normal() {
@@ -281,12 +286,16 @@ namespace {
 
 enum class Images { all, first_set, none };
 
-Index add_material(Reader& reader, int index, Images images) {
+// `id` is a glTF index, or one of MaterialCache::alone.
+MaterialReader reader_of(Reader& reader, int id, Images images) {
+    const Alone worn = id < -1 ? reader.cache.alone[std::size_t(-2 - id)] : Alone{id};
+    const int index = worn.material;
     const tinygltf::Material& source = source_of(reader, index);
     MaterialReader read = {.reader = reader,
                            .source = source,
                            .pointer = fmt::format("/materials/{}", index),
                            .index = index,
+                           .alone = worn.primitive,
                            .textured = images != Images::none,
                            .one_set = images == Images::first_set};
     read.material.name = index < 0             ? "default"
@@ -297,15 +306,55 @@ Index add_material(Reader& reader, int index, Images images) {
         read.material.ambient = Color(0);
     else
         read.material.ambient = Color(0.1F);
-    read.read();
+    return read;
+}
+
+Index keep(Reader& reader, int id, Images images, MaterialReader read) {
     read.read_sides();
-    if (images == Images::all && read.texcoord) reader.cache.texcoords[index] = *read.texcoord;
-    if (!read.other_sets.empty()) reader.cache.other_sets[index] = std::move(read.other_sets);
+    if (images == Images::all && read.texcoord) reader.cache.texcoords[id] = *read.texcoord;
+    if (!read.other_sets.empty()) reader.cache.other_sets[id] = std::move(read.other_sets);
     reader.scene.materials.push_back(std::move(read.material));
     return Index(reader.scene.materials.size() - 1);
 }
 
+Index add_material(Reader& reader, int id, Images images) {
+    MaterialReader read = reader_of(reader, id, images);
+    read.read();
+    return keep(reader, id, images, std::move(read));
+}
+
+// Each becomes a material.
+constexpr std::size_t most_wearers = 64;
+
+// Reads the material for all of its primitives, and says whether that averages what each of them
+// may show a single value of.
+bool is_averaged(Reader& reader, int index) {
+    const std::size_t wearers = reader.cache.wearers ? reader.cache.wearers(index).size() : 0;
+    if (wearers < 2 || wearers > most_wearers) return false;
+    Trial trial;
+    MaterialReader read = reader_of(reader, index, Images::all);
+    read.trial = &trial;
+    read.read();
+    if (trial.averaged) return true;
+    read.trial = nullptr;
+    for (const auto& [kind, what] : trial.losses) read.note_loss(kind, what);
+    reader.cache.materials[index] = keep(reader, index, Images::all, std::move(read));
+    return false;
+}
+
 }  // namespace
+
+int material_on(Reader& reader, int index, const tinygltf::Primitive& primitive) {
+    MaterialCache& cache = reader.cache;
+    if (index < 0 || cache.materials.contains(index)) return index;
+    const auto known = cache.divided.find(index);
+    const bool divided = known != cache.divided.end() ? known->second : is_averaged(reader, index);
+    cache.divided[index] = divided;
+    if (!divided) return index;
+    const auto [own, fresh] = cache.alone_on.emplace(&primitive, -2 - int(cache.alone.size()));
+    if (fresh) cache.alone.push_back({index, &primitive});
+    return own->second;
+}
 
 TextureUse texture_use(const Reader& reader, int index) {
     const auto found = reader.cache.texcoords.find(index);

@@ -3,6 +3,10 @@
 
 #include "penumbra/math.h"
 
+namespace tinygltf {
+struct Primitive;
+}
+
 namespace penumbra::gltf {
 
 struct Reader;
@@ -12,6 +16,10 @@ struct TextureUse {
     bool used = false;
     int texcoord = 0;  ///< TEXCOORD_n
 };
+
+/// What the functions below call glTF material `index` on a primitive that wears it: `index`, or
+/// the number of one of its own where all primitives together would show the mean of an image.
+int material_on(Reader& reader, int index, const tinygltf::Primitive& primitive);
 
 /// The Scene's material for glTF material `index`, made on first use.
 Index read_material(Reader& reader, int index);

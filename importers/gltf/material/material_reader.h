@@ -9,6 +9,12 @@
 
 namespace penumbra::gltf {
 
+/// What reading a material for all of its primitives comes to.
+struct Trial {
+    std::vector<std::pair<Loss::Kind, std::string>> losses = {};  ///< not said yet
+    bool averaged = false;  ///< images that one primitive may show a single value of
+};
+
 /// Reads one material and says what of it is lost. Its parts are read in the order of the members.
 struct MaterialReader {
     /// A reference to a texture as the surface can have it.
@@ -28,7 +34,9 @@ struct MaterialReader {
     Reader& reader;
     const tinygltf::Material& source;
     std::string pointer;
-    int index = -1;        ///< of the glTF material
+    int index = -1;                              ///< of the glTF material
+    const tinygltf::Primitive* alone = nullptr;  ///< that wears it; none: all that do
+    Trial* trial = nullptr;
     bool textured = true;  ///< else without images, and nothing is said
     bool one_set = false;  ///< only images with the texture coordinates of the first one; only
                            ///< what that loses is said
@@ -41,6 +49,7 @@ struct MaterialReader {
     std::vector<OtherSet> other_sets = {};  ///< of images that have others
     Map base = {};
     double alpha = 1;
+    float covered = 1;       ///< how much there is of the surface, by that alpha alone
     double transmitted = 0;  ///< of the light that the surface does not reflect
     float under_coat = 1;    ///< what a clear coat leaves of the light beneath it
 
@@ -75,6 +84,7 @@ struct MaterialReader {
     void read_transmission();
     /// What becomes of it; after the roughness.
     void read_volume();
+    bool has_thickness(const tinygltf::Value& volume);
     void read_diffuse_transmission();
     void read_transmitted_color(const tinygltf::Value& given);
     void read_clearcoat();
@@ -82,6 +92,8 @@ struct MaterialReader {
     // ---- for all
     const tinygltf::Value* extension(const std::string& name) const;
     bool opaque() const { return material.opacity == 1; }
+    /// An image is replaced by one value, such as its mean.
+    void note_mean(const std::string& what) const;
     void note_loss(Loss::Kind kind, const std::string& what) const;
     /// What `info` refers to; where it cannot be laid it is lost in the way `otherwise`: its mean
     /// is taken, or it is ignored.

@@ -38,6 +38,8 @@ struct Plan {
     void flatten(Input& input, const std::string& why);
     void flatten_all(const std::string& why);
     void flatten_even();
+    bool is_even(const Input& input) const;
+    bool even_on_any();
     const Map* frame() const;
     void align();
     void make_constant();
@@ -71,9 +73,9 @@ void Plan::flatten(Input& input, const std::string& why) {
         varies = varies || !even;
         *part = {.factor = even ? *even : mean_of(source)};
     }
+    if (varies && read.trial != nullptr) read.trial->averaged = true;
     if (varies && !why.empty())
-        read.note_loss(Loss::approximated,
-                       fmt::format("{} is replaced by its mean over what the facets show: {}",
+        read.note_mean(fmt::format("{} is replaced by its mean over what the facets show: {}",
                                    input.name, why));
     input.map.state = Map::State::constant;
 }
@@ -85,12 +87,29 @@ void Plan::flatten_all(const std::string& why) {
 
 // Where all that the facets show of an image is alike, it need not be laid.
 void Plan::flatten_even() {
-    for (Input& input : inputs) {
-        const auto even = [&](const TexelSource* part) {
-            return even_of(read.as_shown(*part, input.map)).has_value();
-        };
-        if (input.map.is_laid() && std::ranges::all_of(input.parts, even)) flatten(input, "");
+    for (Input& input : inputs)
+        if (input.map.is_laid() && is_even(input)) flatten(input, "");
+}
+
+bool Plan::is_even(const Input& input) const {
+    return std::ranges::all_of(input.parts, [&](const TexelSource* part) {
+        return even_of(read.as_shown(*part, input.map)).has_value();
+    });
+}
+
+// Does any primitive show but one value of each image? Without an image of the base colour it then
+// needs none at all.
+bool Plan::even_on_any() {
+    if (read.base.is_laid()) return false;
+    bool any = false;
+    for (const tinygltf::Primitive* primitive : read.reader.cache.wearers(read.index)) {
+        read.alone = primitive;
+        any = any || std::ranges::all_of(inputs, [&](const Input& input) {
+                  return !input.map.is_laid() || is_even(input);
+              });
     }
+    read.alone = nullptr;
+    return any;
 }
 
 void Plan::metallic_roughness() {
@@ -300,14 +319,17 @@ void MaterialReader::read_metallic_roughness() {
     else
         plan.metallic_roughness();
     if (!opaque()) plan.flatten_all("the surface is transparent");
-    // Of images that make some parts of a surface clear many surfaces use one part.
-    if (extension("KHR_materials_transmission") != nullptr) plan.flatten_even();
+    // Of images for all of a model many surfaces use one part.
+    if (extension("KHR_materials_transmission") != nullptr ||
+        (opaque() && has_lobe_maps(plan.maps)))
+        plan.flatten_even();
     plan.maps.base.factor = material.color;
     if (base.is_laid()) {
         plan.maps.base.raster = raster_of(reader, base.texture);
         plan.maps.base.srgb = true;
     }
     const bool baked = has_lobe_maps(plan.maps) && opaque();
+    if (baked && trial != nullptr && plan.even_on_any()) trial->averaged = true;
     if (baked) plan.align();
     if (baked && has_lobe_maps(plan.maps))
         plan.bake();

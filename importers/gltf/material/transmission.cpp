@@ -35,11 +35,27 @@ void MaterialReader::read_transmission() {
                   "transmission is approximate: a rough surface is shown as clear");
 }
 
+// The thickness is that of the body: all that its image can tell is where there is none.
+bool MaterialReader::has_thickness(const tinygltf::Value& volume) {
+    if (number(volume, "thicknessFactor", 0) <= 0) return false;
+    const TextureInfo info = texture_info(volume, "thicknessTexture");
+    if (!textured || info.texture < 0) return true;
+    Map map = {.texture = info.texture, .texcoord = info.texcoord};
+    map.laid.transform = transform_of(info);
+    const TexelSource texels =
+        as_shown({.raster = raster_of(reader, info.texture), .channel = 1, .single = true}, map);
+    const auto [least, most] = range_of(texels);
+    if (least <= 0 && most > 0)
+        note_mean("thicknessTexture is taken as nowhere 0: a surface is a pane or the outside of a "
+                  "body as a whole");
+    return most > 0;
+}
+
 // KHR_materials_volume: a surface without thickness is a pane, which does not bend the light, and
 // keeps the reflection of its material; others are the outside of a body.
 void MaterialReader::read_volume() {
     const auto* given = extension("KHR_materials_volume");
-    if (given == nullptr || transmitted == 0 || number(*given, "thicknessFactor", 0) <= 0) return;
+    if (given == nullptr || transmitted == 0 || !has_thickness(*given)) return;
     const auto* ior = extension("KHR_materials_ior");
     const double n = ior != nullptr ? number(*ior, "ior", 1.5) : 1.5;
     if (n > 1) {

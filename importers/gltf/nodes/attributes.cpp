@@ -116,7 +116,8 @@ void read_tangents(const Part& part, const Elements& range, Mesh& mesh) {
 }
 
 void read_texcoords(const Part& part, const Elements& range, Mesh& mesh) {
-    const int material = material_of(part.reader, part.primitive);
+    const int material =
+        material_on(part.reader, material_of(part.reader, part.primitive), part.primitive);
     const TextureUse use = texture_use(part.reader, material);
     const std::string name = fmt::format("TEXCOORD_{}", use.texcoord);
     if (attribute(part, name, {TINYGLTF_TYPE_VEC2}) < 0) {

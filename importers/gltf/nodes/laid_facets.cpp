@@ -33,7 +33,8 @@ bool add_facets(const Part& part, int texcoord, std::vector<LaidFacet>& facets) 
 }
 
 // Of all meshes, whether or not they are shown.
-std::optional<std::vector<LaidFacet>> facets_of(const Reader& reader, int material, int texcoord) {
+std::optional<std::vector<LaidFacet>> facets_of(const Reader& reader, const Alone& worn,
+                                                int texcoord) {
     // What is to be said of the meshes is said where they are read.
     Scene scene;
     LossTally losses;
@@ -43,7 +44,9 @@ std::optional<std::vector<LaidFacet>> facets_of(const Reader& reader, int materi
     for (std::size_t m = 0; m < model.meshes.size(); ++m) {
         const MeshKey key = {.mesh = int(m)};
         for (const tinygltf::Primitive& primitive : model.meshes[m].primitives) {
-            if (material_of(reader, primitive) != material) continue;
+            if (worn.primitive != nullptr ? &primitive != worn.primitive
+                                          : material_of(reader, primitive) != worn.material)
+                continue;
             if (!add_facets({quiet, primitive, key, {}}, texcoord, facets)) return std::nullopt;
         }
     }
@@ -53,10 +56,17 @@ std::optional<std::vector<LaidFacet>> facets_of(const Reader& reader, int materi
 }  // namespace
 
 void offer_facets(Reader& reader) {
-    reader.cache.facets = [&reader](int material,
+    reader.cache.wearers = [&reader](int material) {
+        std::vector<const tinygltf::Primitive*> found;
+        for (const tinygltf::Mesh& mesh : reader.document.model.meshes)
+            for (const tinygltf::Primitive& primitive : mesh.primitives)
+                if (material_of(reader, primitive) == material) found.push_back(&primitive);
+        return found;
+    };
+    reader.cache.facets = [&reader](const Alone& worn,
                                     int texcoord) -> std::optional<std::vector<LaidFacet>> {
         try {
-            return facets_of(reader, material, texcoord);
+            return facets_of(reader, worn, texcoord);
         } catch (const MemoryError&) {
             throw;
         } catch (const Error&) {  // in a mesh that may not be shown

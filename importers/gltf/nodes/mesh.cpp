@@ -198,7 +198,9 @@ void read_primitive(const Part& part, const std::vector<Matrix>& joints, const s
     }
     std::vector<Index> chosen;
     const Elements range = used_vertices(part, mesh.triangles, chosen);
-    mesh.material = read_material(part.reader, material_of(part.reader, part.primitive));
+    mesh.material = read_material(
+        part.reader,
+        material_on(part.reader, material_of(part.reader, part.primitive), part.primitive));
     const Vec3 own_origin = read_attributes(part, range, mesh);
     std::optional<Vec3> origin;
     if (!joints.empty())

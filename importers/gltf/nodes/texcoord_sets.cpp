@@ -149,7 +149,7 @@ Mesh part_of(const Mesh& mesh, std::vector<Facet> facets) {
 
 std::vector<Mesh> lay_by_one_set(const Part& part, const Elements& range, Mesh mesh) {
     Reader& reader = part.reader;
-    const int source = material_of(reader, part.primitive);
+    const int source = material_on(reader, material_of(reader, part.primitive), part.primitive);
     const auto others = reader.cache.other_sets.find(source);
     const bool textured = !mesh.texcoords.empty();
     std::vector<Mesh> result;

@@ -15,6 +15,10 @@
 #include <utility>
 #include <vector>
 
+namespace tinygltf {
+struct Primitive;
+}
+
 namespace penumbra::gltf {
 
 /// The images of one surface that bake_specular_lobes() made, for all materials with the same ones.
@@ -41,7 +45,14 @@ struct Relaid {
 /// Texture coordinates of a facet's corners, with v running up.
 using LaidFacet = std::array<Vec2f, 3>;
 
-/// What the materials have come to so far.
+/// A glTF material as one primitive shows it, without the parts of its images that others show.
+struct Alone {
+    int material = -1;
+    const tinygltf::Primitive* primitive = nullptr;
+};
+
+/// What the materials have come to so far. What is said to be by glTF index is by that of `alone`
+/// too, which is -2 - n for its n-th entry.
 struct MaterialCache {
     std::map<int, Index> materials = {};   ///< by glTF index; -1: the default one
     std::map<int, Index> untextured = {};  ///< the same without images
@@ -55,9 +66,15 @@ struct MaterialCache {
     ImageStore store = {};           ///< by number
     std::map<int, int> images = {};  ///< by texture: the one that can be read; -1: none
     std::map<std::string, TexelMask> shown = {};  ///< by material, texture and how it is laid
-    /// The facets that wear glTF material `material`, by TEXCOORD_`texcoord`; none where that
-    /// cannot be told.
-    std::function<std::optional<std::vector<LaidFacet>>(int material, int texcoord)> facets = {};
+    /// The facets that wear a material, of all primitives or of one, by TEXCOORD_`texcoord`; none
+    /// where that cannot be told.
+    std::function<std::optional<std::vector<LaidFacet>>(const Alone& worn, int texcoord)> facets =
+        {};
+    std::vector<Alone> alone = {};
+    std::map<const tinygltf::Primitive*, int> alone_on = {};  ///< into `alone`, as above
+    std::map<int, bool> divided = {};  ///< by glTF index: it is read for each primitive alone
+    /// The primitives that wear glTF material `material`.
+    std::function<std::vector<const tinygltf::Primitive*>(int material)> wearers = {};
     std::map<std::pair<int, bool>, Color> means = {};  ///< by texture, and whether it is sRGB
 };
 

@@ -103,13 +103,6 @@ void MaterialMaker::emission_image() {
     const std::optional<MapImage> map = image("map_ke");
     if (!map) return;
     if (material.emission == Color(0)) material.emission = Color(1);
-    if (!opaque()) {
-        material.emission *= mean_of({.raster = &textures.raster(*map), .srgb = true});
-        note_loss(Loss::approximated, map->line,
-                  fmt::format("{} is replaced by its mean: the surface is transparent",
-                              printable(map->word)));
-        return;
-    }
     ImageMap laid = map->laid();
     laid.texture = textures.texture(*map, true);
     material.emission_map = laid;

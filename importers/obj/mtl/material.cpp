@@ -227,6 +227,7 @@ void MaterialMaker::make() {
     else
         phong();
     normal_image();
+    material.emission *= material.opacity;  // d is how much there is of all of it
     transparency();
     coat();
     name_other_maps();

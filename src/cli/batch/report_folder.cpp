@@ -37,20 +37,41 @@ std::optional<std::pair<std::uintmax_t, std::uintmax_t>> identity_of(const fs::p
     throw Error(Failure::output, folder.string(), "cannot write the report: " + error.message());
 }
 
+// Is there a report in the folder, or what a run of several scenes has finished of one?
+bool is_report(const fs::path& folder) {
+    std::error_code ignored;
+    if (fs::exists(folder / "cache.json", ignored)) return true;
+    try {
+        return !cases_of_json(read_text(folder / "report.json")).empty();
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+[[noreturn]] void refuse(const fs::path& file) {
+    throw Error(Failure::output, file.string(),
+                "is there already, and not from a report; give the report another folder",
+                Remedy::replace);
+}
+
 }  // namespace
 
-void check_report(const fs::path& folder) {
+void check_report(const fs::path& folder, bool replace) {
     std::error_code ignored;
     const fs::path target = plain(folder);
     if (fs::exists(target, ignored) && !fs::is_directory(target, ignored))
         throw Error(Failure::output, folder.string(), "is not a folder");
+    if (const fs::path page = target / "index.html";
+        !replace && fs::exists(page, ignored) && !is_report(target))
+        refuse(page);
     if (fs::is_directory(target, ignored))
         check_writable(target / "index.html");
     else
         check_writable(target);
 }
 
-ReportFolder::ReportFolder(const fs::path& final_name) : target_(plain(final_name)) {
+ReportFolder::ReportFolder(const fs::path& final_name, bool replace)
+    : target_(plain(final_name)), replace_(replace) {
     const std::string prefix = "." + target_.filename().string() + ".";
     remove_stale(target_, prefix);
     remove_stale(target_.parent_path(), prefix);
@@ -88,7 +109,10 @@ void ReportFolder::check_free(const fs::path& to) {
     };
     check(to);
     std::error_code error;
-    if (!fs::is_directory(to, error)) return;
+    const bool directory = fs::is_directory(to, error);
+    const bool theirs = fs::exists(to, error) && !(directory && fs::is_empty(to, error));
+    if (theirs && !replace_ && !is_report(target_) && !(directory && is_report(to))) refuse(to);
+    if (!directory) return;
     fs::recursive_directory_iterator at(to, error);
     for (; !error && at != fs::recursive_directory_iterator(); at.increment(error))
         check(at->path());

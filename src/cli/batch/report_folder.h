@@ -13,14 +13,16 @@
 
 namespace penumbra::cli {
 
-/// Throws Error (output) when no report can be written there.
-void check_report(const std::filesystem::path& folder);
+/// Throws Error (output) when no report can be written there, or, unless `replace` is set, when the
+/// pages of somebody else are there.
+void check_report(const std::filesystem::path& folder, bool replace);
 
 /// A folder beside the final one; removed with all that is in it unless finish() is called.
 class ReportFolder {
   public:
-    /// Throws Error (output).
-    explicit ReportFolder(const std::filesystem::path& final_name);
+    /// Unless `replace` is set, files that are not of an earlier report stay: where they lie in the
+    /// way, the functions below throw Error (output). Throws Error (output).
+    explicit ReportFolder(const std::filesystem::path& final_name, bool replace = false);
     ~ReportFolder();
     ReportFolder(const ReportFolder&) = delete;
     ReportFolder& operator=(const ReportFolder&) = delete;
@@ -44,6 +46,7 @@ class ReportFolder {
 
   private:
     std::filesystem::path target_, staging_;
+    bool replace_ = false;
     std::mutex mutex_ = {};
     std::set<std::pair<std::uintmax_t, std::uintmax_t>> inputs_ = {};  ///< device and number
 

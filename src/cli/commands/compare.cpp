@@ -78,12 +78,12 @@ std::string folder_name(std::string name) {
 
 int compare(const Context& context) {
     const Arguments& arguments = context.arguments;
-    if (arguments.report) check_report(*arguments.report);
+    if (arguments.report) check_report(*arguments.report, arguments.force);
     const auto pairs = picture_pairs(arguments.inputs[0], arguments.inputs[1]);
     const bool several = fs::is_directory(arguments.inputs[0]);
     const CompareOptions options = options_of(context);
     std::optional<ReportFolder> report;
-    if (arguments.report) report.emplace(*arguments.report);
+    if (arguments.report) report.emplace(*arguments.report, arguments.force);
 
     for (const PicturePair& pair : pairs)
         if (report) report->protect(std::array{pair.test, pair.reference});

@@ -109,12 +109,12 @@ int validate(const Context& context) {
     const Arguments& arguments = context.arguments;
     std::vector<SceneJob> scenes = scenes_of(arguments);
     const fs::path report = report_of(arguments);
-    check_report(report);
+    check_report(report, arguments.force);
     const std::string povray = povray_version(arguments.povray);
     context.console.detail(povray);
     for (SceneJob& scene : scenes) scene.povray = povray;
 
-    ReportFolder folder(report);
+    ReportFolder folder(report, arguments.force);
     if (arguments.manifest) folder.protect({&*arguments.manifest, 1});
     for (const SceneJob& scene : scenes)
         if (scene.judging.mask) folder.protect({&*scene.judging.mask, 1});

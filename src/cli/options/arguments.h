@@ -43,7 +43,7 @@ struct Arguments {
     PovStyle pov_style = PovStyle::standalone;
     int bits = 8;  ///< of an integer picture's channels
     bool resume = false;
-    bool force = false;              ///< export: over files that are there and not from an export
+    bool force = false;              ///< over files that are there and not from an earlier run
     double checkpoint_interval = 5;  ///< seconds; 0: none
     int threads = 0;                 ///< 0: as many as the machine has
     std::size_t max_memory = 0;      ///< bytes; 0: three quarters of what is free

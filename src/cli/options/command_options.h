@@ -169,6 +169,8 @@ class CommandOptions : public OptionReader {
             value("--report", "DIR", "Folder of the report", [this](const std::string& text) {
                 arguments_.report = not_empty("--report", text);
             });
+            flag("--force", arguments_.force,
+                 "Replace files that are not from a report, too, but never an input");
             break;
         case Command::calibrate:
         case Command::info: break;

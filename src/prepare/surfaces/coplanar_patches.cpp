@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "prepare/sieve.h"
 #include "prepare/surfaces/facet_overlaps.h"
+#include "prepare/surfaces/facet_sides.h"
 
 #include <tbb/parallel_sort.h>
 
@@ -90,14 +91,20 @@ bool share_corner(const WorldFacets& facets, Index instance, Index a, Index b) {
     return false;
 }
 
+// Cells in which a facet lies on one that stands just before it in its mesh.
+using FoldedCells = std::vector<std::uint64_t>;
+
 // Takes out what is alone in its cell, but for what follows it in the mesh and hangs together with
-// it: most of a curved mesh. What may lie in a plane of the scene stays.
-void drop_what_is_alone(const WorldFacets& facets, std::vector<std::vector<InCell>>& parts) {
+// it without a fold: most of a curved mesh. What may lie in a plane of the scene stays.
+void drop_what_is_alone(const WorldFacets& facets, const std::vector<FoldedCells>& folded,
+                        std::vector<std::vector<InCell>>& parts) {
     std::size_t count = 0;
     for (const auto& part : parts) count += part.size();
     Sieve seen(count), twice(count);
     for (const Plane& plane : facets.scene().planes)
         each_cell(plane, facets, [&](std::uint64_t cell) { twice.insert(cell); });
+    for (const FoldedCells& cells : folded)
+        for (const std::uint64_t cell : cells) twice.insert(cell);
     InCell last = {.facet = no_index};
     Index instance = 0;
     for (const auto& part : parts)
@@ -114,22 +121,46 @@ void drop_what_is_alone(const WorldFacets& facets, std::vector<std::vector<InCel
         std::erase_if(part, [&](const InCell& in) { return !twice.contains(in.cell); });
 }
 
+// The last few facets, of which the next one may be a copy or the other half of a fold.
+class Recent {
+  public:
+    bool lies_on_one(const WorldFacet& facet, Index instance) const {
+        return std::ranges::any_of(facets_, [&](const auto& known) {
+            return known.first == instance && overlap(known.second, facet);
+        });
+    }
+    void add(const WorldFacet& facet, Index instance) {
+        facets_[next_++ % facets_.size()] = {instance, facet};
+    }
+
+  private:
+    std::array<std::pair<Index, WorldFacet>, 4> facets_ = {
+        {{no_index, {}}, {no_index, {}}, {no_index, {}}, {no_index, {}}}};
+    std::size_t next_ = 0;
+};
+
 std::vector<InCell> facets_by_cell(const WorldFacets& facets) {
     constexpr std::size_t block = std::size_t(1) << 15;
     std::vector<std::vector<InCell>> parts((facets.count() + block - 1) / block);
+    std::vector<FoldedCells> folded(parts.size());
     for_each_block(facets.count(), [&](std::size_t first, std::size_t last) {
         std::vector<InCell>& part = parts[first / block];
         part.reserve(last - first);
         Index instance = facets.instance_of(Index(first));
+        Recent recent;
         for (auto number = Index(first); number < last; ++number) {
             while (number >= facets.first_of(instance + 1)) ++instance;
             const auto facet = facets.at(instance, number - facets.first_of(instance));
             if (!facet) continue;
-            each_cell(facet->normal, facet->normal.dot(facet->corners[0]),
-                      [&](std::uint64_t cell) { part.push_back({cell, number}); });
+            const bool folds = recent.lies_on_one(*facet, instance);
+            recent.add(*facet, instance);
+            each_cell(facet->normal, facet->normal.dot(facet->corners[0]), [&](std::uint64_t cell) {
+                part.push_back({cell, number});
+                if (folds) folded[first / block].push_back(cell);
+            });
         }
     });
-    drop_what_is_alone(facets, parts);
+    drop_what_is_alone(facets, folded, parts);
     std::vector<InCell> all;
     std::size_t count = 0;
     for (const auto& part : parts) count += part.size();
@@ -198,58 +229,21 @@ void join_neighbours(const WorldFacets& facets, Run run, std::vector<AtVertex>& 
 
 // ---- overlaps -----------------------------------------------------------------------------------
 
-// One of two that lie in one plane.
-struct Side {
-    Index instance = no_index;  // none: a plane of the scene
-    Index material = 0;
-    bool plain = false;  // looks like any other of its material
-    bool opaque = true;
-    bool solid = true;  // only its front is seen
-    bool one_sided = false;
-};
-
-// Does it make a difference which of the two is seen?
-bool must_be_parted(const Side& a, const Side& b, bool facing) {
-    // A ray that passes a back which is not shown misses a front that lies no farther.
-    const bool holes = !facing && (a.one_sided || b.one_sided);
-    if (a.material == b.material && a.plain && b.plain && !holes) return false;
-    // Where two bodies touch nobody looks, and the two sides of a sheet may be two facets.
-    const bool bodies = a.opaque && b.opaque && a.solid && b.solid;
-    const bool sheet = a.instance == b.instance && a.material == b.material && !holes;
-    return facing || !(bodies || sheet);
-}
-
-Side side_of(const WorldFacets& facets, Index number) {
-    const Index instance = facets.instance_of(number);
-    const Index facet = number - facets.first_of(instance);
-    return {.instance = instance,
-            .material = facets.mesh_of(instance).material,
-            .plain = facets.plain(instance, facet),
-            .opaque = opaque(facets.material_of(instance)),
-            .solid = facets.solid(instance, facet),
-            .one_sided = facets.material_of(instance).sides == Sides::front};
-}
-
 class Overlaps {
   public:
-    Overlaps(const WorldFacets& facets, Sets& patches) : facets_(facets), patches_(patches) {}
+    Overlaps(const WorldFacets& facets, const std::vector<Index>& patch)
+        : facets_(facets), patch_(patch) {}
 
     // Finds what overlaps among the facets of a cell.
     void add(Run run) {
-        const Index first = patches_.of(run[0].facet);
-        if (std::ranges::all_of(run, [&](auto& in) { return patches_.of(in.facet) == first; }))
-            return;
+        const Index first = patch_[run[0].facet];
+        if (std::ranges::all_of(run, [&](auto& in) { return patch_[in.facet] == first; })) return;
         placed_.clear();
         boxes_.clear();
         for (const InCell& in : run) {
             const Index instance = facets_.instance_of(in.facet);
             placed_.push_back(*facets_.at(instance, in.facet - facets_.first_of(instance)));
-            Bounds box;
-            for (const Vec3& p : placed_.back().corners) {
-                box.extend(p - Vec3(in_one_plane));
-                box.extend(p + Vec3(in_one_plane));
-            }
-            boxes_.push_back({box, Index(boxes_.size()), patches_.of(in.facet)});
+            boxes_.push_back(boxed(placed_.back(), boxes_.size(), patch_[in.facet]));
         }
         each_touching_pair(boxes_, [&](Index i, Index j) {
             add_pair(run[i].facet, run[j].facet, placed_[i], placed_[j]);
@@ -269,8 +263,17 @@ class Overlaps {
             });
             const bool facing = facet->normal.dot(in_it.normal) > 0;
             if (!there || !must_be_parted(under, side, facing)) continue;
-            found_.push_back({no_index, patches_.of(in.facet), facing, !facing});
+            found_.push_back({no_index, patch_[in.facet], facing, !facing});
         }
+    }
+
+    // Two facets that were of one patch.
+    void add_fold(Index a, Index b) {
+        const auto at = [&](Index number) {
+            const Index instance = facets_.instance_of(number);
+            return *facets_.at(instance, number - facets_.first_of(instance));
+        };
+        add_pair(a, b, at(a), at(b), true);
     }
 
     // In an order that does not depend on the hashes of cells.
@@ -281,14 +284,15 @@ class Overlaps {
     }
 
   private:
-    void add_pair(Index a, Index b, const WorldFacet& at_a, const WorldFacet& at_b) {
-        if (lies_on_patch(a, b)) return add_pair(b, a, at_b, at_a);
-        const Index lower = patches_.of(a), upper = patches_.of(b);
+    void add_pair(Index a, Index b, const WorldFacet& at_a, const WorldFacet& at_b,
+                  bool fold = false) {
+        if (lies_on_patch(a, b)) return add_pair(b, a, at_b, at_a, fold);
+        const Index lower = patch_[a], upper = patch_[b];
         const std::uint64_t both = std::uint64_t(lower) << 32 | upper;
         if (known_.contains(both) || !overlap(at_a, at_b)) return;
         const bool facing = at_a.normal.dot(at_b.normal) > 0;
         const Side below = side_of(facets_, a), above = side_of(facets_, b);
-        if (!must_be_parted(below, above, facing)) return;
+        if (!fold && !must_be_parted(below, above, facing)) return;
         known_.insert(both);
         // What shows one side goes towards that one.
         found_.push_back({lower, upper, facing, !facing && below.solid && !above.one_sided});
@@ -296,11 +300,11 @@ class Overlaps {
 
     bool lies_on_patch(Index facet, Index other) {
         const Index a = facets_.instance_of(facet), b = facets_.instance_of(other);
-        return a == b ? patches_.of(facet) > patches_.of(other) : lies_on(facets_, a, b);
+        return a == b ? patch_[facet] > patch_[other] : lies_on(facets_, a, b);
     }
 
     const WorldFacets& facets_;
-    Sets& patches_;
+    const std::vector<Index>& patch_;
     std::unordered_set<std::uint64_t> known_;  // lower and upper patch of what was found
     std::vector<OverlappingPatches> found_;
     std::vector<WorldFacet> placed_;  // scratch
@@ -327,7 +331,20 @@ CoplanarPatches coplanar_patches(const WorldFacets& facets) {
     Sets patches(facets.count());
     std::vector<AtVertex> scratch;
     each_run(all, [&](Run run) { join_neighbours(facets, run, scratch, patches); });
-    Overlaps overlaps(facets, patches);
+    result.patch.resize(facets.count());
+    for (Index i = 0; i < facets.count(); ++i) result.patch[i] = patches.of(i);
+    Folds folds(facets, result.patch);
+    std::vector<Index> members;
+    each_run(all, [&](Run run) {
+        members.clear();
+        for (const InCell& in : run) members.push_back(in.facet);
+        folds.add(members);
+    });
+    result.left = folds.too_many();
+    const std::vector<std::pair<Index, Index>> folded = folds.found();
+    result.torn = part_folds(facets, folded, result.patch);
+    Overlaps overlaps(facets, result.patch);
+    for (const auto& [a, b] : folded) overlaps.add_fold(a, b);
     each_run(all, [&](Run run) { overlaps.add(run); });
     for (const Plane& plane : facets.scene().planes) {
         const WorldFacet in_it = facet_in(plane, facets);
@@ -336,9 +353,6 @@ CoplanarPatches coplanar_patches(const WorldFacets& facets) {
         });
     }
     result.overlaps = overlaps.found();
-    if (result.overlaps.empty()) return result;
-    result.patch.resize(facets.count());
-    for (Index i = 0; i < facets.count(); ++i) result.patch[i] = patches.of(i);
     return result;
 }
 

@@ -1,6 +1,7 @@
 // Patches: facets of an instance that hang together in one plane; and which of them lie on others.
 #pragma once
 
+#include "prepare/surfaces/folded_patches.h"
 #include "prepare/surfaces/world_facets.h"
 
 #include <vector>
@@ -17,8 +18,10 @@ struct OverlappingPatches {
 };
 
 struct CoplanarPatches {
-    std::vector<Index> patch = {};  ///< of every facet; empty where nothing overlaps
+    std::vector<Index> patch = {};  ///< of every facet; maybe empty where nothing overlaps
     std::vector<OverlappingPatches> overlaps = {};
+    std::vector<TornFacet> torn = {};  ///< from patches that overlap themselves
+    bool left = false;                 ///< some still do: they would be too many
 };
 
 /// Finds the patches that have to be parted, as it makes a difference which of them is seen.

@@ -37,6 +37,15 @@ bool overlap(const WorldFacet& a, const WorldFacet& b) {
            !parted_by_edges(b, a, winding(b));
 }
 
+GroupedBox boxed(const WorldFacet& facet, std::size_t item, Index group) {
+    Bounds box;
+    for (const Vec3& p : facet.corners) {
+        box.extend(p - Vec3(in_one_plane));
+        box.extend(p + Vec3(in_one_plane));
+    }
+    return {box, Index(item), group};
+}
+
 namespace {
 
 constexpr std::size_t in_a_leaf = 4;

@@ -17,6 +17,9 @@ struct GroupedBox {
     Index item = 0, group = 0;
 };
 
+/// Around a facet, and what may lie in one plane with it.
+GroupedBox boxed(const WorldFacet& facet, std::size_t item, Index group);
+
 /// Calls visit(item, item) once for every two boxes of different groups that touch. Changes the
 /// order of the boxes.
 void each_touching_pair(std::vector<GroupedBox>& boxes,

@@ -149,10 +149,15 @@ void say(Losses& losses, const char* place, std::size_t count, const std::string
 void part_facets(Scene& scene, const Bounds& box, Losses& losses) {
     const WorldFacets facets(scene, box);
     const CoplanarPatches found = coplanar_patches(facets);
+    if (found.left)
+        losses.push_back({Loss::approximated, "facets",
+                          "many lie in one plane with others that they hang together with: which "
+                          "of them shows is a matter of rounding"});
     if (found.overlaps.empty()) return;
     const ByInstance places = levelled(facets, found);
     const double step = layer / facets.factor();
     center_meshes(scene, box.radius());
+    tear(scene, found.torn);
     const Count count = lift_all(scene, places, step);
     say(losses, "facets", count.lifted,
         fmt::format("that lie in one plane with others are lifted off it by {:.2g}: which of them "
