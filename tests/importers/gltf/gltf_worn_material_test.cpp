@@ -1,6 +1,6 @@
 // One material on several primitives, of which each shows another part of its images.
 #include "importers/gltf/gltf_materials.h"
-#include "scene/metallic_roughness.h"
+#include "scene/surface/metallic_roughness.h"
 
 using namespace penumbra;
 using test::Gltf;
