@@ -195,32 +195,64 @@ void add_coat(const Look& look, const Material& m, std::vector<Layer>& layers) {
     layers[layers.size() - 1].note = "a clear coat";
 }
 
+// Highlight and mirror of a look, and in which layers they stand.
+struct Gloss {
+    SpecularLobe shown = {};     ///< beside the other terms, or in a layer of its own colour
+    SpecularLobe mirrored = {};  ///< in layers above all
+    bool above = false;          ///< there are such layers
+    bool by_image = false;       ///< its colour comes from an image
+    bool own_color = false;      ///< it has a colour besides the pigment
+};
+
+Gloss gloss_in(const Look& look, const Material& m, std::size_t lobe) {
+    const bool lobes = m.specular_lobes && look.surface == Look::Surface::mesh;
+    const SpecularLobe own = {m.specular, m.shininess, m.reflection, m.roughness};
+    Gloss gloss = {.shown = lobes ? m.specular_lobes->lobes[lobe] : own,
+                   .by_image = lobes && m.specular_lobes->color.texture != no_index};
+    gloss.mirrored = gloss.shown;
+    if (look.mirrored || !blurs(m)) gloss.mirrored.roughness = 0;
+    const bool reflects = gloss.shown.reflection != black;
+    gloss.above = reflects && (takes_reflected(m) || gloss.mirrored.roughness > 0);
+    if (gloss.above) gloss.shown.reflection = black;
+    gloss.own_color =
+        gloss.by_image || (m.specular_color && (gloss.shown.specular > 0 || reflects));
+    return gloss;
+}
+
+// The layers of those mirrors.
+void add_mirrors_above(const Plan& plan, const Look& look, const Gloss& gloss,
+                       std::vector<Layer>& layers) {
+    const Material& m = material_of(plan, look);
+    const bool image = std::holds_alternative<ImageMap>(m.pattern);
+    // The pigment that tints a metal's reflection.
+    Layer layer{.finish = gloss_of(m), .tinted = look.tinted && !image && !gloss.own_color};
+    if (gloss.own_color)
+        layer.pigment = gloss_layer(plan, look, m, gloss.shown, gloss.by_image).pigment;
+    layer.finish.conserve_energy = takes_reflected(m);
+    add_mirrors(plan, look, std::move(layer), gloss.mirrored, m.mirrors, layers);
+}
+
+// What the layers below those of gloss and coat show.
+Material below_gloss(const Look& look, const Material& given, const Gloss& gloss) {
+    Material m = given;
+    const SpecularLobe base = gloss.own_color ? SpecularLobe{} : gloss.shown;
+    m.specular = base.specular;
+    m.shininess = base.shininess;
+    m.reflection = base.reflection;
+    if (gloss.own_color && !gloss.by_image) m.metallic = 0;
+    if (look.surface != Look::Surface::mesh) {
+        m.emission_map.reset();
+        m.diffuse_transmission_map.reset();
+    }
+    return m;
+}
+
 }  // namespace
 
 std::vector<Layer> layers_of(const Plan& plan, const Look& look, std::size_t lobe) {
     const Material& given = material_of(plan, look);
-    Material m = given;
-    const bool mesh = look.surface == Look::Surface::mesh;
-    const bool specular_lobes = m.specular_lobes && mesh;
-    const bool by_image = specular_lobes && m.specular_lobes->color.texture != no_index;
-    const SpecularLobe own = {m.specular, m.shininess, m.reflection, m.roughness};
-    SpecularLobe shown = specular_lobes ? m.specular_lobes->lobes[lobe] : own;
-    SpecularLobe mirrored = shown;
-    const bool takes = takes_reflected(given);
-    if (look.mirrored || !blurs(given)) mirrored.roughness = 0;
-    const bool above = mirrored.reflection != black && (takes || mirrored.roughness > 0);
-    if (above) shown.reflection = black;
-    const bool own_color =
-        by_image || (m.specular_color && (shown.specular > 0 || shown.reflection != black));
-    const SpecularLobe base = own_color ? SpecularLobe{} : shown;
-    m.specular = base.specular;
-    m.shininess = base.shininess;
-    m.reflection = base.reflection;
-    if (own_color && !by_image) m.metallic = 0;
-    if (!mesh) {
-        m.emission_map.reset();
-        m.diffuse_transmission_map.reset();
-    }
+    const Gloss gloss = gloss_in(look, given, lobe);
+    const Material m = below_gloss(look, given, gloss);
     const bool image = std::holds_alternative<ImageMap>(m.pattern);
     std::vector<Layer> layers;
     if (image && (look.tinted || m.color != white))
@@ -230,15 +262,9 @@ std::vector<Layer> layers_of(const Plan& plan, const Look& look, std::size_t lob
     if (m.emission_map && m.emission != black) layers.push_back(image_glow(plan, look, m));
     if (m.diffuse_transmission != black && m.opacity > 0)
         layers.push_back(back_light(plan, look, m));
-    if (own_color) layers.push_back(gloss_layer(plan, look, given, shown, by_image));
-    if (above) {
-        // The pigment that tints a metal's reflection.
-        Layer gloss{.finish = gloss_of(given), .tinted = look.tinted && !image};
-        if (own_color) gloss.pigment = gloss_layer(plan, look, given, shown, by_image).pigment;
-        if (own_color) gloss.tinted = false;
-        gloss.finish.conserve_energy = takes;
-        add_mirrors(plan, look, std::move(gloss), mirrored, given.mirrors, layers);
-    }
+    if (gloss.own_color && (gloss.shown.specular > 0 || gloss.shown.reflection != black))
+        layers.push_back(gloss_layer(plan, look, given, gloss.shown, gloss.by_image));
+    if (gloss.above) add_mirrors_above(plan, look, gloss, layers);
     if (given.coat) add_coat(look, given, layers);
     return layers;
 }

@@ -96,55 +96,64 @@ Vec3 mirrored_by(const Vec3& view, const Vec3& displaced, const Vec3& normal) {
     return reflected - normal * (2 * depth);
 }
 
-// Pushes what one mirror of the surface point sends back; `share` as by its material alone.
-void reflect(const PreparedScene& prepared, const SurfacePoints& surfaces, std::size_t slot,
-             const Path& path, const Vec3& normal, Vec3 share, const Vec3& direction,
-             Onward onward) {
-    const PreparedMaterial& material = *surfaces.material[slot];
-    const double cosine = -surfaces.view[slot].dot(normal);
-    share *= tint_of_mirror(surfaces, slot, cosine) * surfaces.alpha[slot];
-    if (material.fresnel) {
-        const Index medium = prepared.medium_of(surfaces.object[slot], path.mirrored);
-        share *= fresnel_reflectance(relative_index(prepared, path.inside, medium), cosine);
+// A surface point, the path that reached it, and where it goes on.
+struct Meeting {
+    const PreparedScene& prepared;
+    const SurfacePoints& surfaces;
+    std::size_t slot;
+    const Path& path;
+    Onward onward;
+
+    const PreparedMaterial& material() const { return *surfaces.material[slot]; }
+    Vec3 displaced(const Vec3& offset) const {
+        return displaced_normal(prepared, surfaces.object[slot], surfaces.normal[slot], offset);
     }
-    Path back = path;
+    // The view mirrored by a displaced normal.
+    Vec3 mirrored(const Vec3& by) const {
+        return mirrored_by(surfaces.view[slot], by, surfaces.normal[slot]);
+    }
+};
+
+void send_back(const Meeting& at, const Vec3& direction, const Vec3& share) {
+    if (share == Vec3(0)) return;
+    Path back = at.path;
     ++back.level;
     back.mirrored = true;
-    back.weight *= share;
-    onward.next.push(surfaces.position[slot], direction.normalized(), back);
+    back.weight *= share * at.surfaces.alpha[at.slot];
+    at.onward.next.push(at.surfaces.position[at.slot], direction.normalized(), back);
+}
+
+// One mirror; `share` as by its material alone.
+void reflect(const Meeting& at, const Vec3& normal, Vec3 share, const Vec3& direction) {
+    const double cosine = -at.surfaces.view[at.slot].dot(normal);
+    share *= tint_of_mirror(at.surfaces, at.slot, cosine);
+    if (at.material().fresnel) {
+        const Index medium = at.prepared.medium_of(at.surfaces.object[at.slot], at.path.mirrored);
+        share *= fresnel_reflectance(relative_index(at.prepared, at.path.inside, medium), cosine);
+    }
+    send_back(at, direction, share);
 }
 
 // The mirrors of the coat.
-void reflect_coat(const PreparedScene& prepared, const SurfacePoints& surfaces, std::size_t slot,
-                  const Path& path, Onward onward) {
-    const PreparedCoat& coat = *surfaces.material[slot]->coat;
-    const Vec3 view = surfaces.view[slot], normal = surfaces.normal[slot];
-    const auto push = [&](const Vec3& by, std::size_t count) {
-        Path back = path;
-        ++back.level;
-        back.mirrored = true;
-        back.weight *= coat_reflectance(coat, -view.dot(by)) * surfaces.alpha[slot] / double(count);
-        if (back.weight == Vec3(0)) return;
-        onward.next.push(surfaces.position[slot], mirrored_by(view, by, normal).normalized(), back);
-    };
-    if (path.mirrored) return push(normal, 1);
-    for (const Vec3& offset : coat.lobe.mirrors)
-        push(displaced_normal(prepared, surfaces.object[slot], normal, offset),
-             coat.lobe.mirrors.size());
+void reflect_coat(const Meeting& at) {
+    const PreparedCoat& coat = *at.material().coat;
+    const Vec3 view = at.surfaces.view[at.slot], normal = at.surfaces.normal[at.slot];
+    if (at.path.mirrored)
+        return send_back(at, at.mirrored(normal), Vec3(coat_reflectance(coat, -view.dot(normal))));
+    for (const Vec3& offset : coat.lobe.mirrors) {
+        const Vec3 by = at.displaced(offset);
+        send_back(at, at.mirrored(by),
+                  Vec3(coat_reflectance(coat, -view.dot(by)) / double(coat.lobe.mirrors.size())));
+    }
 }
 
-// What reflect() does, of every virtual mirror of a lobe, which counts as much as `share`.
-void reflect_by(const PreparedLobe& lobe, double share, const PreparedScene& prepared,
-                const SurfacePoints& surfaces, std::size_t slot, const Path& path, Onward onward) {
+// Every virtual mirror of a lobe, which counts as much as `share`.
+void reflect_by(const Meeting& at, const PreparedLobe& lobe, double share) {
     if (share == 0 || lobe.reflection == Vec3(0)) return;
     const Vec3 each = lobe.reflection * (share / double(lobe.mirrors.size()));
-    const Vec3 view = surfaces.view[slot], normal = surfaces.normal[slot];
     for (const Vec3& offset : lobe.mirrors) {
-        const Vec3 displaced =
-            offset == Vec3(0) ? normal
-                              : displaced_normal(prepared, surfaces.object[slot], normal, offset);
-        reflect(prepared, surfaces, slot, path, displaced, each,
-                mirrored_by(view, displaced, normal), onward);
+        const Vec3 by = at.displaced(offset);
+        reflect(at, by, each, at.mirrored(by));
     }
 }
 
@@ -160,16 +169,15 @@ void scatter(const PreparedScene& prepared, const SurfacePoints& surfaces, std::
         total = transmit(prepared, surfaces, slot, path, onward);
     // Where the surface itself is opaque POV-Ray looks for no total reflection.
     if (alpha == 0 || (total && material.opacity < 1)) return;
-    if (material.coat) reflect_coat(prepared, surfaces, slot, path, onward);
+    const Meeting at = {prepared, surfaces, slot, path, onward};
+    if (material.coat) reflect_coat(at);
     if (!material.mirrors) return;
     const LobeMix& mix = surfaces.lobes[slot];
     if (!material.blurs || path.mirrored)
-        return reflect(prepared, surfaces, slot, path, surfaces.normal[slot],
-                       reflection_of(material, mix), surfaces.reflected[slot], onward);
-    reflect_by(material.lobes[mix.first], 1 - mix.share, prepared, surfaces, slot, path, onward);
-    if (mix.share > 0)
-        reflect_by(material.lobes[mix.first + 1], mix.share, prepared, surfaces, slot, path,
-                   onward);
+        return reflect(at, surfaces.normal[slot], reflection_of(material, mix),
+                       surfaces.reflected[slot]);
+    reflect_by(at, material.lobes[mix.first], 1 - mix.share);
+    if (mix.share > 0) reflect_by(at, material.lobes[mix.first + 1], mix.share);
 }
 
 namespace {

@@ -64,7 +64,7 @@ TEST_CASE("[render] says where rays go through a pixel") {
     CHECK(adaptive.sampled);
     REQUIRE(adaptive.render.antialiasing);
     CHECK(adaptive.render.antialiasing->threshold == 0.25);
-    CHECK(adaptive.render.antialiasing->depth == 3);
+    CHECK(adaptive.render.antialiasing->depth == 2);
     const Imported deep = load("[render]\nantialias_depth = 5");
     REQUIRE(deep.render.antialiasing);
     CHECK(deep.render.antialiasing->threshold == 0.2);
