@@ -222,6 +222,20 @@ TEST_CASE("the example in an include file shows what the tracer shows") {
                  pictured(folder, example_of(test::read(folder / "things.inc"))));
 }
 
+TEST_CASE("an include file refuses to stand beside another model of its name") {
+    const auto guard = [](const Scene& scene) {
+        const std::string text = include_text(scene);
+        const auto at = text.find("#ifdef (Content_things)\n  #if (Content_things != ");
+        REQUIRE(at != std::string::npos);
+        CHECK(has(text, "#error \"Another model named things is included already"));
+        return text.substr(at, text.find("#end", at) - at);
+    };
+    Scene other = things();
+    other.materials[1].color = Color(0.1F);
+    CHECK(guard(things()) == guard(things()));
+    CHECK(guard(things()) != guard(other));
+}
+
 TEST_CASE("an included model can be placed in its own units") {
     NEEDS_POVRAY();
     // Far away and large: both scale and offset count.
