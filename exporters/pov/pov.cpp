@@ -1,4 +1,5 @@
 #include "base/file.h"
+#include "base/hash.h"
 #include "exporters/pov/files.h"
 #include "exporters/pov/geometry.h"
 #include "exporters/pov/material.h"
@@ -16,6 +17,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <sstream>
 #include <utility>
 
@@ -211,6 +215,7 @@ struct Writer {
         all_losses();
         usage(name);
         out += "\n#local " + version + " = version;\n#version 3.7;\n";
+        const std::string above = std::exchange(out, "");
         units();
         materials();
         if (const std::string meshes = geometry_text(plan); !meshes.empty()) {
@@ -223,7 +228,17 @@ struct Writer {
         out += pov::objects_text(plan);
         out += count == 1 ? "\n" : "}\n\n";
         out += "#version " + version + ";\n";
-        return std::move(out);
+        return above + only_one(out) + out;
+    }
+
+    // A file of the same name from another folder would replace some of the declarations.
+    std::string only_one(const std::string& content) const {
+        const std::string name = identifier(plan, "Content");
+        const auto number = std::uint32_t(hash_of(std::as_bytes(std::span(content)))) >> 1U;
+        return fmt::format("#ifdef ({0})\n  #if ({0} != {1})\n    #error \"Another model named {2} "
+                           "is included already: export one of them under another name.\"\n"
+                           "  #end\n#end\n#declare {0} = {1};\n",
+                           name, number, plan.model);
     }
 
     // A scene around the model, ready to be copied: its own camera and lights, one source each.

@@ -2,12 +2,15 @@
 
 #include "base/hash.h"
 #include "scene/defects.h"
+#include "scene/sides.h"
+#include "scene/transforms.h"
 
 #include "penumbra/scene.h"
 
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <map>
 #include <span>
 #include <utility>
 #include <vector>
@@ -60,6 +63,41 @@ bool bounds_body(const Mesh& mesh) {
                       .dot((Vec3(mesh.positions[b]) - apex).cross(Vec3(mesh.positions[c]) - apex));
     }
     return open == 0 && volume > 0;
+}
+
+namespace {
+
+bool contains(const Bounds& box, const Vec3& point) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (point[axis] < box.min[axis] || point[axis] > box.max[axis]) return false;
+    return true;
+}
+
+}  // namespace
+
+void show_whole_bodies(Scene& scene) {
+    const std::vector<Backs> all = backs(scene);
+    std::map<Index, Index> both;   // by material
+    std::map<Index, bool> bodies;  // by mesh
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (!all[i].hidden || all[i].from > 0 || all[i].lean == 0) continue;
+        const Instance& instance = scene.instances[i];
+        Mesh& mesh = scene.meshes[instance.mesh];
+        if (scene.materials[mesh.material].sides == Sides::both) continue;  // by another instance
+        const auto [body, unknown] = bodies.try_emplace(instance.mesh, false);
+        if (unknown) body->second = opaque(scene.materials[mesh.material]) && bounds_body(mesh);
+        const Bounds box = transformed(box_around_facets(mesh), instance.transform);
+        const bool outside = scene.camera < scene.cameras.size() &&
+                             !contains(box, scene.cameras[scene.camera].position);
+        if (!body->second || !outside) continue;
+        const auto [known, fresh] = both.try_emplace(mesh.material, Index(scene.materials.size()));
+        if (fresh) {
+            Material whole = scene.materials[mesh.material];
+            whole.sides = Sides::both;
+            scene.materials.push_back(std::move(whole));
+        }
+        mesh.material = known->second;
+    }
 }
 
 }  // namespace penumbra

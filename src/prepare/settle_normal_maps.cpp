@@ -1,4 +1,5 @@
 // What becomes of normal maps, as the user chose.
+#include "prepare/body.h"
 #include "scene/defects.h"
 #include "scene/normal_map.h"
 
@@ -17,12 +18,15 @@ constexpr std::size_t most_baked_facets = 100'000;
 
 Losses settle_normal_maps(Scene& scene, NormalMaps choice) {
     assert(surface_defects(scene).empty());
-    switch (choice) {
-    case NormalMaps::bake: return bake_normal_maps(scene, {.facets = most_baked_facets});
-    case NormalMaps::drop: return drop_normal_maps(scene);
-    case NormalMaps::pixel: complete_tangents(scene); break;
+    if (choice == NormalMaps::pixel) {
+        complete_tangents(scene);
+        return {};
     }
-    return {};
+    Losses losses = choice == NormalMaps::bake
+                        ? bake_normal_maps(scene, {.facets = most_baked_facets})
+                        : drop_normal_maps(scene);
+    show_whole_bodies(scene);  // by the normals that stay
+    return losses;
 }
 
 }  // namespace penumbra

@@ -1,5 +1,6 @@
 #include "prepare/small_objects.h"
 
+#include "prepare/body.h"
 #include "prepare/scale.h"
 #include "scene/tolerances.h"
 #include "scene/transforms.h"
@@ -12,8 +13,10 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace penumbra {
@@ -26,6 +29,7 @@ struct Object {
     double radius;     // of a sphere around it
     double length;     // of its longest side, in its own axes
     double thickness;  // of its shortest one
+    Index instance = no_index;
 };
 
 Object object_of(const Instance& instance, const Mesh& mesh, const Bounds& box) {
@@ -49,7 +53,9 @@ std::vector<Object> objects_of(const Scene& scene) {
         auto& box = boxes[instance.mesh];
         if (!box) box = box_around_facets(mesh);
         // A point has nothing to lose.
-        if (box->radius() > 0) objects.push_back(object_of(instance, mesh, *box));
+        if (!(box->radius() > 0)) continue;
+        objects.push_back(object_of(instance, mesh, *box));
+        objects.back().instance = Index(&instance - scene.instances.data());
     }
     for (const Sphere& sphere : scene.spheres) {
         const double diameter = 2 * sphere.radius;
@@ -70,8 +76,71 @@ std::string description(const Object& object) {
 // A flat sheet has no thickness that could be lost; float32 may leave it a little.
 bool has_thickness(const Object& object) { return object.thickness > 1e-5 * object.length; }
 
-void note_eaten(const std::vector<Object>& objects, const Bounds& box, Losses& losses) {
+// Is any edge so short? A body that is thin has such edges along its rim.
+bool has_short_edge(const Mesh& mesh, const Matrix& transform, double least) {
+    const auto corner = [&](Index vertex) {
+        Vec3 direction;
+        transform.multDirMatrix(Vec3(mesh.positions[vertex]), direction);
+        return direction;
+    };
+    return std::ranges::any_of(mesh.triangles, [&](const auto& triangle) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double length = (corner(triangle[i]) - corner(triangle[(i + 1) % 3])).length();
+            if (length > 0 && length < least) return true;
+        }
+        return false;
+    });
+}
+
+struct PositionHash {
+    std::size_t operator()(const Vec3f& p) const { return hash_of_point(p); }
+};
+
+// Around each part of a mesh that hangs together.
+std::vector<Bounds> boxes_of_parts(const Mesh& mesh) {
+    std::unordered_map<Vec3f, Index, PositionHash> places;
+    std::vector<Index> parent(mesh.positions.size());
+    for (Index i = 0; i < parent.size(); ++i)
+        parent[i] = places.try_emplace(mesh.positions[i], i).first->second;
+    const auto root = [&](Index i) {
+        while (parent[i] != i) i = parent[i] = parent[parent[i]];
+        return i;
+    };
+    for (const auto& [a, b, c] : mesh.triangles)
+        for (const Index other : {b, c}) parent[root(other)] = root(a);
+    std::map<Index, Bounds> boxes;
+    for (const auto& triangle : mesh.triangles)
+        for (const Index vertex : triangle)
+            boxes[root(vertex)].extend(Vec3(mesh.positions[vertex]));
+    std::vector<Bounds> found;
+    for (const auto& [first, box] : boxes) found.push_back(box);
+    return found;
+}
+
+// The objects, those with short edges taken apart.
+std::vector<Object> parts_of(const Scene& scene, const std::vector<Object>& whole, double least) {
+    std::map<Index, std::vector<Bounds>> known;  // by mesh
+    std::vector<Object> parts;
+    for (const Object& object : whole) {
+        if (object.instance == no_index || (has_thickness(object) && object.thickness < least) ||
+            !has_short_edge(scene.meshes[scene.instances[object.instance].mesh],
+                            scene.instances[object.instance].transform, least)) {
+            parts.push_back(object);
+            continue;
+        }
+        const Instance& instance = scene.instances[object.instance];
+        const auto [boxes, fresh] = known.try_emplace(instance.mesh);
+        if (fresh) boxes->second = boxes_of_parts(scene.meshes[instance.mesh]);
+        for (const Bounds& box : boxes->second)
+            parts.push_back(object_of(instance, scene.meshes[instance.mesh], box));
+    }
+    return parts;
+}
+
+void note_eaten(const Scene& scene, const std::vector<Object>& whole, const Bounds& box,
+                Losses& losses) {
     const double least = shadow_margin / normalising_factor(box);
+    const std::vector<Object> objects = parts_of(scene, whole, least);
     const Object* smallest = nullptr;
     std::size_t count = 0;
     for (const Object& object : objects) {
@@ -144,7 +213,7 @@ Losses losses_by_size(const Scene& scene, const Bounds& box, int width, int heig
     assert(scene.camera < scene.cameras.size());
     Losses losses;
     const std::vector<Object> objects = objects_of(scene);
-    note_eaten(objects, box, losses);
+    note_eaten(scene, objects, box, losses);
     note_invisible(scene, objects, box, width, height, losses);
     return losses;
 }

@@ -184,6 +184,10 @@ TEST_CASE("every name that an include file declares carries the model's") {
         std::istringstream words(line.substr(at));
         std::string directive, name;
         words >> directive >> name;
+        // What refuses another model of the name.
+        if (directive == "#ifdef" || directive == "#if" || directive == "#error" ||
+            directive == "#end")
+            continue;
         INFO(line);
         CHECK((directive == "#declare" || directive == "#local"));
         const auto kind_end = name.find("_chair_scale");
@@ -220,6 +224,20 @@ TEST_CASE("the example in an include file shows what the tracer shows") {
     write_pov(scene, small, folder / "things.inc", {.pov_style = PovStyle::include});
     require_same(render(scene, small),
                  pictured(folder, example_of(test::read(folder / "things.inc"))));
+}
+
+TEST_CASE("an include file refuses to stand beside another model of its name") {
+    const auto guard = [](const Scene& scene) {
+        const std::string text = include_text(scene);
+        const auto at = text.find("#ifdef (Content_things)\n  #if (Content_things != ");
+        REQUIRE(at != std::string::npos);
+        CHECK(has(text, "#error \"Another model named things is included already"));
+        return text.substr(at, text.find("#end", at) - at);
+    };
+    Scene other = things();
+    other.materials[1].color = Color(0.1F);
+    CHECK(guard(things()) == guard(things()));
+    CHECK(guard(things()) != guard(other));
 }
 
 TEST_CASE("an included model can be placed in its own units") {

@@ -84,9 +84,10 @@ TEST_CASE("A model setting places an input, and a model of a sidecar") {
 TEST_CASE("A model that is placed twice is stored once") {
     Inputs inputs;
     inputs.file("sub/t.obj", facet_obj);
-    inputs.file("a.toml", "[material.red]\n[[model]]\nfile = \"sub/t.obj\"\n[[model]]\n"
-                          "file = \"sub/../sub/t.obj\"\ntranslate = [1, 0, 0]\n"
-                          "[[model]]\nfile = \"sub/t.obj\"\nmaterial = \"red\"");
+    inputs.file("a.toml",
+                "[material.red]\n[[model]]\nfile = \"sub/t.obj\"\n[[model]]\n"
+                "file = \"sub/../sub/t.obj\"\ntranslate = [1, 0, 0]\n"
+                "[[model]]\nfile = \"sub/t.obj\"\nmaterial = \"red\"\ntranslate = [0, 1, 0]");
     const Imported result = inputs.load({"a.toml"});
     CHECK(result.scene.instances.size() == 3);
     CHECK(result.scene.meshes.size() == 2);

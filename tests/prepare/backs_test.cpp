@@ -1,4 +1,6 @@
 // One-sided facets that lie back to back, and what is said of backs that cannot be hidden.
+#include "prepare/body.h"
+#include "scene/sides.h"
 #include "support/small_scenes.h"
 #include "support/support.h"
 
@@ -137,6 +139,36 @@ TEST_CASE("Shown backs, are named for each material") {
           "sides of smooth facets by their normals");
     scene.materials[0].smooth = false;
     CHECK(shown_backs(scene).empty());
+}
+
+TEST_CASE("Bodies with vertex colours, show both sides where nobody sees their backs") {
+    // A cube of which each facet has vertices of its own, with normals that lean by 3 degrees.
+    const Scene cube = smooth_cube();
+    Scene scene = cube;
+    Mesh& mesh = scene.meshes[0];
+    mesh = {.name = "cube", .material = 0};
+    for (const auto& triangle : cube.meshes[0].triangles) {
+        const auto corner = [&](std::size_t i) { return cube.meshes[0].positions[triangle[i]]; };
+        const Vec3f front = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
+        const auto first = Index(mesh.positions.size());
+        for (std::size_t i = 0; i < 3; ++i) {
+            mesh.positions.push_back(corner(i));
+            mesh.normals.push_back((front + corner(i).normalized() * 0.06F).normalized());
+            mesh.colors.emplace_back(1, float(i) / 2, 0);
+        }
+        mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    REQUIRE(backs(scene).at(0).hidden);
+    const auto sides = [](Scene changed) {
+        show_whole_bodies(changed);
+        return changed.materials[changed.meshes[0].material].sides;
+    };
+    CHECK(sides(scene) == Sides::both);
+    Scene inside = scene;
+    inside.cameras[0].position = {0, 0, 0};
+    CHECK(sides(inside) == Sides::front);
+    mesh.triangles.pop_back();  // a hole, through which backs are seen
+    CHECK(sides(scene) == Sides::front);
 }
 
 TEST_CASE("Shown backs, are named of bodies that are seen through or inside out") {

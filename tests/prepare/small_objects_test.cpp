@@ -61,6 +61,27 @@ TEST_CASE("Thin things in a large scene are a loss, which names the size") {
     CHECK(losses_of(small).empty());
 }
 
+TEST_CASE("Thin parts of a mesh are a loss, whatever else is in the mesh") {
+    Scene scene = ground(100000);
+    add_plate(scene, {0.4F, 0.004F, 0.3F});
+    // Two plates and a far box in one mesh.
+    Mesh& plates = scene.meshes.back();
+    const std::vector<Vec3f> corners = plates.positions;
+    const auto triangles = plates.triangles;
+    for (const Vec3f& move : {Vec3f(3, 0, 0), Vec3f(40000, 0, 0)}) {
+        const auto first = Index(plates.positions.size());
+        const float size = move.x > 3 ? 100 : 1;
+        for (const Vec3f& corner : corners) plates.positions.push_back(corner * size + move);
+        for (const auto& [a, b, c] : triangles)
+            plates.triangles.push_back({first + a, first + b, first + c});
+    }
+    const Losses losses = losses_of(scene);
+    REQUIRE(losses.size() == 1);
+    CHECK(losses[0].count == 3);
+    CHECK(losses[0].what.find("3 of 4 objects are thinner than 0.") == 0);
+    CHECK(losses[0].what.ends_with("the thinnest is 'plate', of 0.004"));
+}
+
 TEST_CASE("An object that is turned is as thin as before") {
     Scene scene = ground(100000);
     add_plate(scene, {0.4F, 0.004F, 0.3F});
