@@ -137,8 +137,8 @@ TEST_CASE("a report of several scenes removes no folder that holds an input") {
     fs::rename(folder / "room.png", folder / "room/room.png");
     write(folder / "room.mtl", "newmtl wall\nKd 1 1 1\nmap_Kd room/room.png\n");
     const std::string before = read(folder / "room/room.png");
-    const Ended ended =
-        run(folder.path, {"validate", "--each", "room.obj", "--report", ".", "--size", "16x12"});
+    const Ended ended = run(folder.path, {"validate", "--each", "room.obj", "--report", ".",
+                                          "--size", "16x12", "--force"});
     CHECK(ended.status == 4);
     CHECK(ended.err.find(std::string("room/room.png") + never) != std::string::npos);
     CHECK(read(folder / "room/room.png") == before);
