@@ -110,12 +110,12 @@ void ReportFolder::check_free(const fs::path& to) {
     check(to);
     std::error_code error;
     const bool directory = fs::is_directory(to, error);
-    const bool theirs = fs::exists(to, error) && !(directory && fs::is_empty(to, error));
-    if (theirs && !replace_ && !is_report(target_) && !(directory && is_report(to))) refuse(to);
-    if (!directory) return;
-    fs::recursive_directory_iterator at(to, error);
+    fs::recursive_directory_iterator at = directory ? fs::recursive_directory_iterator(to, error)
+                                                    : fs::recursive_directory_iterator();
     for (; !error && at != fs::recursive_directory_iterator(); at.increment(error))
         check(at->path());
+    const bool theirs = fs::exists(to, error) && !(directory && fs::is_empty(to, error));
+    if (theirs && !replace_ && !is_report(target_) && !(directory && is_report(to))) refuse(to);
 }
 
 void ReportFolder::publish(const std::string& part) {
