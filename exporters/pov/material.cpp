@@ -168,8 +168,8 @@ std::string declare_lobes(const Plan& plan, const Look& look, const std::string&
         const double last = double(std::max<std::size_t>(1, count - 1));
         if (m.specular_lobes && !m.specular_lobes->mixed)
             entries += fmt::format("{}[{} {}] [{} {}]", k == 0 ? "" : " ",
-                                   number(std::max(0.0, (double(k) - 0.5) / last)), part,
-                                   number(std::min(1.0, (double(k) + 0.5) / last)), part);
+                                   number(std::max(0.0, (double(k) - lobe_reach) / last)), part,
+                                   number(std::min(1.0, (double(k) + lobe_reach) / last)), part);
         else
             entries += fmt::format("{}[{} {}]", k == 0 ? "" : " ", number(double(k) / last), part);
     }

@@ -5,6 +5,7 @@
 #include "penumbra/math.h"
 #include "penumbra/scene.h"
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -45,6 +46,16 @@ bool is_mirror_count(int count);
 /// The mirrors of a reflection, each with 1/n of it, in a fixed order: one that is not displaced
 /// where it is sharp. Precondition: is_mirror_count(count).
 std::vector<VirtualMirror> virtual_mirrors(float roughness, int count);
+
+/// Of lobes that are not mixed (SpecularLobes::mixed) each is shown alone as far as this from its
+/// own level, in steps from one to the next. In what is left one goes over into the other, so that
+/// a lookup that differs in its last digits does not show.
+inline constexpr double lobe_reach = 0.4;
+
+/// The part of the next lobe at `between`, in [0, 1], of the way to it.
+inline double lobe_share(double between) {
+    return std::clamp((between - lobe_reach) / (1 - 2 * lobe_reach), 0.0, 1.0);
+}
 
 /// Does Material::conserve_energy do anything?
 bool takes_reflected(const Material& material);

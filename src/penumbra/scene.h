@@ -94,7 +94,8 @@ struct SpecularLobe {
 /// Images that vary highlight and mirror over an opaque mesh, in place of Material's specular,
 /// shininess and reflection: `color` takes the place of P, or of specular_color, in the tint M of
 /// both; `level`'s first channel, in [0, 1], chooses between `lobes`, which are spaced evenly over
-/// it and mixed linearly; or else, which takes half the rays, the nearest is shown.
+/// it and mixed linearly; or else, which takes half the rays, the nearest is shown but for
+/// a narrow transition: see lobe_share().
 struct SpecularLobes {
     ImageMap color = {};                   ///< no texture: P stays
     ImageMap level = {};                   ///< no texture: lobes[0] alone; the texture is linear

@@ -163,9 +163,10 @@ LobeMix lobes_at(const PreparedScene& prepared, const SpecularLobes& specular_lo
     const double last = double(specular_lobes.lobes.size() - 1);
     const double level =
         std::clamp(image_at(prepared, specular_lobes.level, texcoord).x, 0.0, 1.0) * last;
-    if (!specular_lobes.mixed) return {Index(std::lround(level)), 0};
-    const double first = std::min(std::floor(level), last - 1);
-    return {Index(first), level - first};
+    const double first = std::min(std::floor(level), last - 1), between = level - first;
+    if (specular_lobes.mixed) return {Index(first), between};
+    const double share = lobe_share(between);
+    return share < 1 ? LobeMix{Index(first), share} : LobeMix{Index(first) + 1, 0};
 }
 
 // What lies behind, seen through the surface: T of the surface itself, all of it in the gaps.
