@@ -146,10 +146,6 @@ Layer gloss_layer(const Plan& plan, const Look& look, const Material& m, const S
     return layer;
 }
 
-}  // namespace
-
-namespace {
-
 // Transparent layers that reflect 1/n each, by displaced normals if there are several. POV-Ray adds
 // what they reflect, and filters it by no layer above.
 void add_mirrors(const Plan& plan, const Look& look, Layer gloss, const SpecularLobe& lobe,
@@ -179,7 +175,7 @@ void add_coat(const Look& look, const Material& m, std::vector<Layer>& layers) {
     const bool sharp = look.mirrored || m.opacity < 1;
     const auto mirrors = virtual_mirrors(sharp ? 0 : coat.roughness, coat.mirrors);
     const float part = 1 / float(mirrors.size());
-    Layer layer{.pigment = color(white, {.transmit = 1})};
+    Layer layer{.pigment = color(white, {.transmit = 1}), .note = "a clear coat"};
     if (penumbra::mirrors(coat)) {
         layer.finish = {.reflection = Color(coat.reflection * part),
                         .grazing = coat.grazing * part,
@@ -192,7 +188,6 @@ void add_coat(const Look& look, const Material& m, std::vector<Layer>& layers) {
     layer.mirror = {};
     layer.finish = {.phong = coat.specular, .phong_size = coat.shininess};
     if (coat.specular > 0) layers.push_back(layer);
-    layers[layers.size() - 1].note = "a clear coat";
 }
 
 // Highlight and mirror of a look, and in which layers they stand.

@@ -97,6 +97,13 @@ std::vector<Feature> mirror_features() {
             worn("rough mirror of a coloured highlight",
                  "reflection = 0.7\nspecular_color = [1, 0.4, 0.3]\nmetallic = 1\n"
                  "roughness = 0.3\n"),
+            worn("what is reflected taken from the rest",
+                 "color = [0.7, 0.3, 0.2]\nreflection = 1\nmetallic = 1\nspecular = 0.5\n"
+                 "specular_color = [0.1, 0.2, 0.3]\nroughness = 0.3\nconserve_energy = true\n"),
+            worn("clear coat, sharp", "color = [0.7, 0.3, 0.2]\n"
+                                      "coat = { specular = 0.4, shininess = 90 }\n"),
+            worn("clear coat, rough, on a rough metal",
+                 gold + "roughness = 0.5\ncoat = { roughness = 0.3, specular = 0.4 }\n"),
             worn("see-through and rough: sharp", "reflection = 0.3\nroughness = 0.4\n"
                                                  "opacity = 0.5\n"),
             modelled("rough dielectric, smooth body", body(egg()), plastic + "roughness = 0.4\n"),
