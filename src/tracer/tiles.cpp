@@ -121,8 +121,10 @@ void primary_rays(const Job& job, const PictureTile& tile, const PixelSample& sa
 }
 
 // Of a plane that rays which were mirrored do not see.
-void find_hits_on_unmirrored(const PreparedScene& prepared, std::size_t plane, Workspace& work) {
+void find_hits_on_unmirrored(const PreparedScene& prepared, std::size_t plane, bool coherent,
+                             Workspace& work) {
     const Generation& rays = work.current;
+    if (coherent) return closest_on_plane(prepared, plane, rays.rays, work.hits);  // from the eye
     work.before = {work.hits.t, work.hits.object};
     closest_on_plane(prepared, plane, rays.rays, work.hits);
     for (std::size_t i = 0; i < rays.rays.count; ++i) {
@@ -136,7 +138,8 @@ void find_hits(const PreparedScene& prepared, bool coherent, Workspace& work) {
     work.hits.clear(work.current.rays.count);
     closest_shapes(prepared, work.current.rays, work.hits, work.shapes);
     for (std::size_t k = 0; k < prepared.planes.size(); ++k)
-        if (!prepared.scene.planes[k].in_mirrors) find_hits_on_unmirrored(prepared, k, work);
+        if (!prepared.scene.planes[k].in_mirrors)
+            find_hits_on_unmirrored(prepared, k, coherent, work);
     prepared.facets->closest(work.current.rays, work.hits, coherent);
 }
 
