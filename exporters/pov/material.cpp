@@ -60,19 +60,45 @@ std::string no_normal(const Plan& plan, const char* before) {
     return in_other_scenes(plan) ? before + std::string("normal { bumps 0 }") : "";
 }
 
-// The normal of a layer. The gradient is stretched so that it rises everywhere.
-std::string normal_text(const Plan& plan, const Layer& layer, const char* before) {
-    const auto& [axis, amount, offset] = layer.mirror;
-    if (amount == 0) return no_normal(plan, before);
-    return fmt::format("{}normal {{ gradient {}, {}{} phase 0.5 scale 1e9 }}", before,
-                       sdl::vector(axis), number(amount),
-                       in_other_scenes(plan) ? " frequency 1 ramp_wave turbulence 0" : "");
+std::size_t lobe_count(const Material& m) {
+    return m.specular_lobes && m.specular_lobes->level.texture != no_index
+               ? m.specular_lobes->lobes.size()
+               : 1;
 }
 
-std::string texture_text(const Plan& plan, const Layer& layer) {
+bool wears_alpha_map(const Plan& plan, const Look& look) {
+    const auto& map = material_of(plan, look).alpha_map;
+    return map && map->map.texture != no_index && look.surface == Look::Surface::mesh;
+}
+
+// What keeps a normal where it is, inside of the patterns that the look's layers stand in; outer
+// patterns are undone first.
+std::string without_patterns(const Plan& plan, const Look& look) {
+    const Material& m = material_of(plan, look);
+    std::string out;
+    if (m.blend && look.surface == Look::Surface::mesh)
+        out = without_placement(plan, look, m.blend->map);
+    else if (wears_alpha_map(plan, look))
+        out = without_placement(plan, look, m.alpha_map->map);
+    if (lobe_count(m) > 1) out += without_placement(plan, look, m.specular_lobes->level);
+    return out;
+}
+
+// The normal of a layer. The gradient is stretched so that it rises everywhere.
+std::string normal_text(const Plan& plan, const Look& look, const Layer& layer,
+                        const char* before) {
+    const auto& [axis, amount, offset] = layer.mirror;
+    if (amount == 0) return no_normal(plan, before);
+    return fmt::format("{}normal {{ gradient {}, {}{} phase 0.5 scale 1e9{} }}", before,
+                       sdl::vector(axis), number(amount),
+                       in_other_scenes(plan) ? " frequency 1 ramp_wave turbulence 0" : "",
+                       without_patterns(plan, look));
+}
+
+std::string texture_text(const Plan& plan, const Look& look, const Layer& layer) {
     return fmt::format("texture {{{}\n  pigment {{ ",
                        layer.note[0] != 0 ? std::string("  // ") + layer.note : "") +
-           layer.pigment + " }" + normal_text(plan, layer, "\n  ") + "\n  " +
+           layer.pigment + " }" + normal_text(plan, look, layer, "\n  ") + "\n  " +
            finish_text(plan, layer.finish, "  ") + "\n}\n";
 }
 
@@ -82,16 +108,10 @@ std::string tinted_pigment(const Layer& layer, const Color& tint) {
 }
 
 // The pigment and the finish of a tinted layer whose declarations end in `name`.
-std::string tinted_text(const Plan& plan, const Layer& layer, const std::string& name,
-                        const Color& tint) {
+std::string tinted_text(const Plan& plan, const Look& look, const Layer& layer,
+                        const std::string& name, const Color& tint) {
     return fmt::format("pigment {{ {} }}{} finish {{ {} }}", tinted_pigment(layer, tint),
-                       normal_text(plan, layer, " "), identifier(plan, "Finish", name));
-}
-
-std::size_t lobe_count(const Material& m) {
-    return m.specular_lobes && m.specular_lobes->level.texture != no_index
-               ? m.specular_lobes->lobes.size()
-               : 1;
+                       normal_text(plan, look, layer, " "), identifier(plan, "Finish", name));
 }
 
 // The second look of a Blend on a mesh.
@@ -124,7 +144,7 @@ std::string shared_parts(const Plan& plan, const Look& look) {
             out += layers[i].tinted ? "#declare " + identifier(plan, "Finish", name) + " = " +
                                           finish_text(plan, layers[i].finish, "") + "\n"
                                     : "#declare " + identifier(plan, "Layer", name) + " =\n" +
-                                          texture_text(plan, layers[i]);
+                                          texture_text(plan, look, layers[i]);
         }
     }
     if (const auto other = other_look(plan, look)) out += shared_parts(plan, *other);
@@ -138,7 +158,7 @@ std::string tinted_layers(const Plan& plan, const Look& look, std::size_t lobe, 
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const std::string name = part_name(plan, look, lobe, i, layers.size());
         out += layers[i].tinted
-                   ? fmt::format("texture {{ {} }}", tinted_text(plan, layers[i], name, tint))
+                   ? fmt::format("texture {{ {} }}", tinted_text(plan, look, layers[i], name, tint))
                    : "texture { " + identifier(plan, "Layer", name) + " }";
         out += '\n';
     }
@@ -164,7 +184,7 @@ std::string declare_lobes(const Plan& plan, const Look& look, const std::string&
         if (tint != nullptr)
             out += tinted_layers(plan, look, k, *tint);
         else
-            for (const Layer& layer : layers_of(plan, look, k)) out += texture_text(plan, layer);
+            for (const Layer& layer : layers_of(plan, look, k)) out += texture_text(plan, look, layer);
         const double last = double(std::max<std::size_t>(1, count - 1));
         if (m.specular_lobes && !m.specular_lobes->mixed)
             entries += fmt::format("{}[{} {}] [{} {}]", k == 0 ? "" : " ",
@@ -191,7 +211,7 @@ std::string texture_declaration(const Plan& plan, const Look& look, const std::s
                "#declare " + name + " =\n" +
                pattern_text(plan, look, m.blend->map, fmt::format("[0 {}] [1 {}]", second, first));
     }
-    if (!m.alpha_map || m.alpha_map->map.texture == no_index || look.surface != Look::Surface::mesh)
+    if (!wears_alpha_map(plan, look))
         return declare_lobes(plan, look, name, color);
     const std::string there = name + "__there";
     const AlphaMap& alpha_map = *m.alpha_map;
@@ -229,7 +249,7 @@ bool is_single(const Plan& plan, const Look& look) {
 }
 
 std::string single_texture(const Plan& plan, const Look& look, const Color& tint) {
-    return tinted_text(plan, layers_of(plan, look)[0], look.name, tint);
+    return tinted_text(plan, look, layers_of(plan, look)[0], look.name, tint);
 }
 
 std::string nothing_text(const Plan& plan) {

@@ -6,11 +6,32 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 namespace penumbra::pov {
 
 namespace {
 
 using sdl::number;
+
+// An affine map as POV-Ray writes it: where the axes and the origin go.
+struct Placement {
+    Vec3 x = Vec3(1, 0, 0), y = Vec3(0, 1, 0), z = Vec3(0, 0, 1), move = Vec3(0);
+
+    Vec3 turned(const Vec3& v) const { return x * v.x + y * v.y + z * v.z; }
+    // This one, then `next`.
+    Placement then(const Placement& next) const {
+        return {next.turned(x), next.turned(y), next.turned(z), next.turned(move) + next.move};
+    }
+    // The rows of the inverse are the columns of the cofactors over the determinant.
+    Placement inverse() const {
+        const double scale = 1 / x.dot(y.cross(z));
+        const Vec3 a = y.cross(z) * scale, b = z.cross(x) * scale, c = x.cross(y) * scale;
+        Placement out{{a.x, b.x, c.x}, {a.y, b.y, c.y}, {a.z, b.z, c.z}};
+        out.move = out.turned(move) * -1;
+        return out;
+    }
+};
 
 std::string scale_and_move(const Vec3& scale, const Vec3& move) {
     std::string out;
@@ -22,20 +43,42 @@ std::string scale_and_move(const Vec3& scale, const Vec3& move) {
     return out;
 }
 
-std::string matrix(const Vec3& x, const Vec3& y, const Vec3& z, const Vec3& move) {
+std::string matrix(const Placement& p) {
     std::string out;
-    for (const Vec3* row : {&x, &y, &z, &move})
+    for (const Vec3* row : {&p.x, &p.y, &p.z, &p.move})
         out += fmt::format("{}{}, {}, {}", out.empty() ? "" : ",  ", number(row->x), number(row->y),
                            number(row->z));
     return "matrix <" + out + ">";
 }
 
 // POV-Ray moves the pattern and not the lookup.
-std::string inverse_lookup(const std::array<double, 6>& t) {
+Placement inverse_lookup(const std::array<double, 6>& t) {
     const double scale = 1 / (t[0] * t[4] - t[1] * t[3]);
     const double a = t[4] * scale, b = -t[1] * scale, c = -t[3] * scale, d = t[0] * scale;
-    return matrix({a, c, 0}, {b, d, 0}, {0, 0, 1},
-                  {-(a * t[2] + b * t[5]), -(c * t[2] + d * t[5]), 0});
+    return {{a, c, 0}, {b, d, 0}, {0, 0, 1}, {-(a * t[2] + b * t[5]), -(c * t[2] + d * t[5]), 0}};
+}
+
+// Where an image lies: scaled, moved, and then in a place of its own.
+struct Placed {
+    Vec3 scale, move;
+    std::optional<Placement> then;
+};
+
+Placed placed(const Plan& plan, const Look& look, const ImageMap& map) {
+    const TextureFile& file = plan.textures[map.texture];
+    Placed image{{file.u.scale(), file.v.scale(), 1}, {file.u.shift(), file.v.shift(), 0}, {}};
+    if (look.surface == Look::Surface::sphere) {
+        // POV-Ray's u runs from +x towards +z, which is mirrored when seen from outside.
+        image.scale.x = -image.scale.x;
+        image.move.x = 1 - image.move.x;
+    }
+    if (look.surface == Look::Surface::plane) {
+        const PlaneFrame& f = look.frame;
+        image.then = {f.u * map.size, f.v * map.size, f.normal * map.size, f.origin};
+    }
+    if (look.surface == Look::Surface::mesh && map.transform != ImageMap{}.transform)
+        image.then = inverse_lookup(map.transform);
+    return image;
 }
 
 // What a pattern would take over from a #default pigment; other warps than turbulence, and
@@ -54,21 +97,17 @@ std::string color(const Color& c, const Passing& passing) {
 
 // Where the image lies. POV-Ray's image fills the unit square of x and y, or of u and v.
 std::string image_placement(const Plan& plan, const Look& look, const ImageMap& map) {
-    const TextureFile& file = plan.textures[map.texture];
-    Vec3 scale(file.u.scale(), file.v.scale(), 1), move(file.u.shift(), file.v.shift(), 0);
-    if (look.surface == Look::Surface::sphere) {
-        // POV-Ray's u runs from +x towards +z, which is mirrored when seen from outside.
-        scale.x = -scale.x;
-        move.x = 1 - move.x;
-    }
-    std::string out = scale_and_move(scale, move);
-    if (look.surface == Look::Surface::plane) {
-        const PlaneFrame& f = look.frame;
-        out += "\n    " + matrix(f.u * map.size, f.v * map.size, f.normal * map.size, f.origin);
-    }
-    if (look.surface == Look::Surface::mesh && map.transform != ImageMap{}.transform)
-        out += "\n    " + inverse_lookup(map.transform);
+    const Placed image = placed(plan, look, map);
+    std::string out = scale_and_move(image.scale, image.move);
+    if (image.then) out += "\n    " + matrix(*image.then);
     return out;
+}
+
+std::string without_placement(const Plan& plan, const Look& look, const ImageMap& map) {
+    const auto [scale, move, next] = placed(plan, look, map);
+    if (scale == Vec3(1) && move == Vec3(0) && !next) return "";
+    const Placement first{{scale.x, 0, 0}, {0, scale.y, 0}, {0, 0, scale.z}, move};
+    return " " + matrix((next ? first.then(*next) : first).inverse());
 }
 
 std::string image_file(const Plan& plan, const ImageMap& map) {
@@ -151,7 +190,7 @@ std::string sky_pigment(const Plan& plan, const Sky& sky) {
     };
     // POV-Ray's image begins in +x and runs towards +z; ours has its middle in -z.
     return "image_map { " + image_file(plan, map) + " map_type 1 }\n    " +
-           matrix(turned({0, 0, 1}), turned({0, 1, 0}), turned({-1, 0, 0}), Vec3(0));
+           matrix({turned({0, 0, 1}), turned({0, 1, 0}), turned({-1, 0, 0}), Vec3(0)});
 }
 
 }  // namespace penumbra::pov

@@ -19,6 +19,10 @@ std::string color(const Color& c, const Passing& passing);
 /// The transforms that lay the image, or a pattern of it, where it belongs.
 std::string image_placement(const Plan& plan, const Look& look, const ImageMap& map);
 
+/// What undoes these transforms in a part of a texture that they are written after, and that they
+/// are not meant for. POV-Ray applies them to the normals of all textures of a texture_map.
+std::string without_placement(const Plan& plan, const Look& look, const ImageMap& map);
+
 /// `png "file.png" gamma srgb interpolate 2`, as it stands in image_map and image_pattern.
 std::string image_file(const Plan& plan, const ImageMap& map);
 
