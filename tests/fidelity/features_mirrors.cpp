@@ -60,14 +60,35 @@ Feature faded() {
     return staged("rough mirror, alpha of vertices", gltf, shallow);
 }
 
-Feature masked() {
+// An image that is turned and stretched in both directions.
+json turned_texture(Gltf& gltf) {
+    json image = texture(gltf, "picture.png");
+    gltf.root["extensionsUsed"].push_back("KHR_texture_transform");
+    image["extensions"]["KHR_texture_transform"] = {{"scale", {2.5, 0.6}}, {"rotation", 0.5}};
+    return image;
+}
+
+Feature masked(const std::string& name, bool turned) {
     Gltf gltf = body(board());
     gltf.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] =
-        texture(gltf, "picture.png");
+        turned ? turned_texture(gltf) : texture(gltf, "picture.png");
     gltf.root["materials"][0]["alphaMode"] = "MASK";
-    Feature feature = modelled("rough mirror, alpha mask", std::move(gltf),
-                               "reflection = 0.6\nroughness = 0.4\n");
+    Feature feature = modelled(name, std::move(gltf), "reflection = 0.6\nroughness = 0.4\n");
     feature.files["picture.png"] = png(4);
+    return feature;
+}
+
+// Lobes of which each has mirrors of its own, chosen by an image.
+Feature mapped_roughness() {
+    Gltf gltf = body(egg());
+    json& pbr = gltf.root["materials"][0]["pbrMetallicRoughness"];
+    pbr["baseColorFactor"] = {0.9, 0.6, 0.3, 1};
+    pbr["metallicRoughnessTexture"] = turned_texture(gltf);
+    Stage around = stage("");
+    around.lights = "[environment]\nname = \"overcast\"\nsources = 4\n";
+    Feature feature = staged("rough metal, turned roughness map", gltf, around);
+    feature.files["picture.png"] = png();
+    feature.loss = "texture: mixed from";
     return feature;
 }
 
@@ -113,7 +134,9 @@ std::vector<Feature> mirror_features() {
             modelled("rough dielectric, vertex colours", colored(rock()),
                      plastic + "roughness = 0.4\n"),
             faded(),
-            masked(),
+            masked("rough mirror, alpha mask", false),
+            masked("rough mirror, turned alpha mask", true),
+            mapped_roughness(),
             textured()};
 }
 
