@@ -104,14 +104,14 @@ void declare_tints(std::string& out, const Plan& plan, const MeshPlan& mesh, con
 }
 
 // A facet's front is for POV-Ray where its corners run clockwise in a right-handed space.
-std::array<Index, 3> povray_order(const std::array<Index, 3>& corners, Sides sides) {
+std::array<Index, 3> povray_order(const std::array<Index, 3>& corners, bool sides_differ) {
     const auto& [a, b, c] = corners;
-    return sides == Sides::front ? std::array{a, c, b} : corners;
+    return sides_differ ? std::array{a, c, b} : corners;
 }
 
-void append_faces(std::string& out, const Mesh& mesh, const MeshPlan& plan, Sides sides) {
+void append_faces(std::string& out, const Mesh& mesh, const MeshPlan& plan, bool sides_differ) {
     append_list(out, "face_indices", mesh.triangles.size(), [&](std::string& item, std::size_t i) {
-        const auto [a, b, c] = povray_order(mesh.triangles[i], sides);
+        const auto [a, b, c] = povray_order(mesh.triangles[i], sides_differ);
         item += '<';
         sdl::append(item, std::size_t(a));
         item += ',';
@@ -142,7 +142,9 @@ void append_mesh(std::string& out, const Plan& plan, std::size_t index, const Lo
     if (mesh_plan.normals) append_normals(out, mesh.normals);
     if (mesh_plan.texcoords) append_texcoords(out, mesh.texcoords);
     if (!mesh_plan.tints.empty()) append_texture_list(out, plan, mesh_plan, look);
-    append_faces(out, mesh, mesh_plan, plan.scene->materials[mesh.material].sides);
+    const bool sides_differ =
+        plan.scene->materials[mesh.material].sides == Sides::front || frosted(plan, look);
+    append_faces(out, mesh, mesh_plan, sides_differ);
     out += "  inside_vector <0.1, 1, 0.05>\n}\n";
 }
 

@@ -244,9 +244,11 @@ Material below_gloss(const Look& look, const Material& given, const Gloss& gloss
 
 }  // namespace
 
-std::vector<Layer> layers_of(const Plan& plan, const Look& look, std::size_t lobe) {
+namespace {
+
+// All but what stands above.
+std::vector<Layer> lower_layers(const Plan& plan, const Look& look, const Gloss& gloss) {
     const Material& given = material_of(plan, look);
-    const Gloss gloss = gloss_in(look, given, lobe);
     const Material m = below_gloss(look, given, gloss);
     const bool image = std::holds_alternative<ImageMap>(m.pattern);
     std::vector<Layer> layers;
@@ -259,9 +261,45 @@ std::vector<Layer> layers_of(const Plan& plan, const Look& look, std::size_t lob
         layers.push_back(back_light(plan, look, m));
     if (gloss.own_color && (gloss.shown.specular > 0 || gloss.shown.reflection != black))
         layers.push_back(gloss_layer(plan, look, given, gloss.shown, gloss.by_image));
-    if (gloss.above) add_mirrors_above(plan, look, gloss, layers);
-    if (given.coat) add_coat(look, given, layers);
     return layers;
+}
+
+// Light that is scattered and highlights, which are the same in all textures of a mean, are found
+// in one of them.
+void scale_lit(Finish& finish, float factor) {
+    for (Color* term : {&finish.ambient, &finish.emission}) *term *= factor;
+    for (float* term : {&finish.diffuse, &finish.diffuse_behind, &finish.phong}) *term *= factor;
+}
+
+}  // namespace
+
+std::vector<Layer> layers_of(const Plan& plan, const Look& look, std::size_t lobe) {
+    const Material& m = material_of(plan, look);
+    const Gloss gloss = gloss_in(look, m, lobe);
+    std::vector<Layer> layers = lower_layers(plan, look, gloss);
+    if (gloss.above) add_mirrors_above(plan, look, gloss, layers);
+    if (m.coat) add_coat(look, m, layers);
+    return layers;
+}
+
+std::vector<std::vector<Layer>> frosted_layers(const Plan& plan, const Look& look) {
+    const Material& m = material_of(plan, look);
+    Gloss gloss = gloss_in(look, m, 0);
+    const Color reflection = gloss.shown.reflection;
+    gloss.shown.reflection = black;
+    gloss.mirrored.roughness = m.roughness;
+    const std::vector<Layer> below = lower_layers(plan, look, gloss);
+    std::vector<Layer> mirrors;
+    add_mirrors_above(plan, look, gloss, mirrors);
+    std::vector<std::vector<Layer>> textures;
+    for (Layer& mirror : mirrors) {
+        std::vector<Layer>& layers = textures.emplace_back(below);
+        const bool first = textures.size() == 1;
+        for (Layer& layer : layers) scale_lit(layer.finish, first ? float(mirrors.size()) : 0);
+        mirror.finish.reflection = reflection;
+        layers.push_back(mirror);
+    }
+    return textures;
 }
 
 }  // namespace penumbra::pov

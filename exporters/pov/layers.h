@@ -36,4 +36,8 @@ struct Layer {
 /// The layers of a look that shows specular lobes lobe `lobe`, lowest first.
 std::vector<Layer> layers_of(const Plan& plan, const Look& look, std::size_t lobe = 0);
 
+/// Those of each of the textures of which the mean is a frosted look where light goes in. POV-Ray
+/// bends rays by the normal of the uppermost layer alone.
+std::vector<std::vector<Layer>> frosted_layers(const Plan& plan, const Look& look);
+
 }  // namespace penumbra::pov

@@ -172,10 +172,28 @@ std::string pattern_text(const Plan& plan, const Look& look, const ImageMap& map
            "texture_map { " + entries + " }" + image_placement(plan, look, map) + "\n}\n";
 }
 
+// Declares the texture of frosted glass where light goes in, and as NAME__inside the other, by which
+// rays go out: where that one is clear their number does not grow again.
+std::string declare_frosted(const Plan& plan, const Look& look, const std::string& name) {
+    std::string out, entries;
+    for (const std::vector<Layer>& layers : frosted_layers(plan, look)) {
+        const std::string part =
+            fmt::format("{}__way{}", name, std::ranges::count(entries, '[') + 1);
+        out += "#declare " + part + " =\n";
+        for (const Layer& layer : layers) out += texture_text(plan, look, layer);
+        entries += fmt::format("{}[1 {}]", entries.empty() ? "" : " ", part);
+    }
+    out += "#declare " + name + " =\ntexture { average texture_map { " + entries + " } }\n";
+    out += "#declare " + name + "__inside =\n";
+    for (const Layer& layer : layers_of(plan, look)) out += texture_text(plan, look, layer);
+    return out;
+}
+
 // Declares the textures of the look's lobes and, as `name`, their mixture.
 std::string declare_lobes(const Plan& plan, const Look& look, const std::string& name,
                           const Color* tint) {
     const Material& m = material_of(plan, look);
+    if (frosted(plan, look)) return declare_frosted(plan, look, name);
     const std::size_t count = lobe_count(m);
     std::string out, entries;
     for (std::size_t k = 0; k < count; ++k) {
@@ -245,7 +263,8 @@ std::string tint_declaration(const Plan& plan, const Look& look, const std::stri
 
 bool is_single(const Plan& plan, const Look& look) {
     const Material& m = material_of(plan, look);
-    return lobe_count(m) == 1 && !m.alpha_map && !m.blend && layers_of(plan, look).size() == 1;
+    return lobe_count(m) == 1 && !m.alpha_map && !m.blend && !frosted(plan, look) &&
+           layers_of(plan, look).size() == 1;
 }
 
 std::string single_texture(const Plan& plan, const Look& look, const Color& tint) {

@@ -24,7 +24,14 @@ struct Writer {
         const Material& m = scene.materials[look.material];
         std::string text =
             with_texture ? " texture { " + identifier(plan, "Material", look.name) + " }" : "";
-        return text + interior(m, passed || !opaque(m));
+        text += interior(m, passed || !opaque(m));
+        if (frosted(plan, look) && !passed) text += " interior_texture { " + behind(look) + " }";
+        return text;
+    }
+
+    // What the look shows to a ray that meets it from behind.
+    std::string behind(const Look& look) const {
+        return identifier(plan, "Material", look.name) + (frosted(plan, look) ? "__inside" : "");
     }
 
     void title(const std::string& name) {
@@ -42,7 +49,7 @@ struct Writer {
         const std::string from = number(found.half_turns());
         return text +
                fmt::format("\n    interior_texture {{ aoi texture_map {{ [{} {}] [{} {}] }} }}",
-                           from, identifier(plan, "Material", look.name), from, nothing);
+                           from, behind(look), from, nothing);
     }
 
     // Backs cast shadows, too. POV-Ray sees that by itself where one plain opaque texture shows;

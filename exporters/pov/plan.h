@@ -89,6 +89,11 @@ inline bool in_other_scenes(const Plan& plan) { return !plan.model.empty(); }
 /// What the look shows.
 const Material& material_of(const Plan& plan, const Look& look);
 
+/// Does the look blur what is seen through it?
+inline bool frosted(const Plan& plan, const Look& look) {
+    return !look.tinted && frosts(material_of(plan, look));
+}
+
 /// "Material_wood", or "Material_chair__wood" in scenes by others.
 std::string identifier(const Plan& plan, const char* kind, const std::string& name);
 

@@ -67,6 +67,11 @@ bool mirrors(const Coat& coat);
 /// in its place, so that rays grow by the mirrors' number and not by its powers.
 bool blurs(const Material& material);
 
+/// Is it glass that blurs what is seen through it (Material::roughness)? Where a ray meets it from
+/// the side that its normal points to, each of the virtual mirrors reflects and bends a part. A
+/// mesh whose vertices have textures of their own stays clear.
+bool frosts(const Material& material);
+
 /// Where `map` is looked up at the mesh's texture coordinates `uv`.
 inline Vec2 map_texcoord(const ImageMap& map, const Vec2& uv) {
     const auto& t = map.transform;

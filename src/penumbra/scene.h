@@ -161,7 +161,8 @@ struct Material {
     std::optional<Color> specular_color = {};
     Color reflection = Color(0);  ///< mirror coefficient per channel
     /// [0, 1], of the reflection: it is the mean of `mirrors` mirror images by displaced normals,
-    /// see virtual_mirrors(). Of opaque surfaces; of others it is sharp.
+    /// see virtual_mirrors(). Of opaque surfaces, and of those that bend light (`ior`), which then
+    /// bend it by the same normals where it goes in: see frosts(). Of others it is sharp.
     float roughness = 0;
     int mirrors = 7;  ///< 1 (sharp), 7, 13, 19 or 32
     /// What the mirrors reflect is taken from the other terms but what lies behind: they are

@@ -47,44 +47,6 @@ double fresnel_reflectance(double index, double cosine) {
     return std::clamp(0.5 * a * a * (1 + b * b), 0.0, 1.0);
 }
 
-// Pushes the ray that goes on behind the surface. Returns whether it is reflected totally instead.
-bool transmit(const PreparedScene& prepared, const SurfacePoints& surfaces, std::size_t slot,
-              const Path& path, Onward onward) {
-    const PreparedMaterial& material = *surfaces.material[slot];
-    const Vec3 view = surfaces.view[slot], normal = surfaces.normal[slot];
-    const Vec3 position = surfaces.position[slot];
-    Vec3 left(1);  // of the light on its way inside of the object that is left or not entered
-    if (material.absorbs &&
-        path.inside.contains(prepared.medium_of(surfaces.object[slot], path.mirrored)))
-        for (int c = 0; c < 3; ++c)
-            left[c] = std::exp(-material.absorption[c] * surfaces.depth[slot]);
-    Path through = path;
-    const Index medium = prepared.medium_of(surfaces.object[slot], path.mirrored);
-    const double ratio = cross_boundary(prepared, onward.media, through.inside, medium);
-    const double cosine = -view.dot(normal);
-    const double rest = 1 + ratio * ratio * (cosine * cosine - 1);
-    if (std::abs(ratio - 1) < least_cosine) {
-        through.weight *= surfaces.transmittance[slot] * left;
-        onward.next.push(position, view, through);
-        return false;
-    }
-    if (rest >= 0) {
-        through.weight *= surfaces.transmittance[slot] * left;
-        ++through.level;
-        const Vec3 bent = view * ratio + normal * (ratio * cosine - std::sqrt(rest));
-        onward.next.push(position, bent.normalized(), through);
-        return false;
-    }
-    // POV-Ray does not filter what is reflected totally; a hole of the alpha map reflects as well.
-    const double share = material.opacity < 1 ? 1 : 1 - surfaces.alpha[slot];
-    Path back = path;
-    ++back.level;
-    back.mirrored = true;
-    back.weight *= left * share;
-    onward.next.push(position, surfaces.reflected[slot].normalized(), back);
-    return true;
-}
-
 // The view mirrored by a displaced normal as POV-Ray does it (source/backend/render/trace.cpp of
 // 3.7, ComputeReflection): what would go into the surface is mirrored once more, by the normal that
 // was not displaced.
@@ -113,6 +75,45 @@ struct Meeting {
         return mirrored_by(surfaces.view[slot], by, surfaces.normal[slot]);
     }
 };
+
+// Pushes the ray that goes on behind the surface, bent by `normal`, and the part `share` of it.
+// Returns whether it is reflected totally instead.
+bool transmit(const Meeting& at, const Vec3& normal, double share = 1) {
+    const auto& [prepared, surfaces, slot, path, onward] = at;
+    const PreparedMaterial& material = at.material();
+    const Vec3 view = surfaces.view[slot], position = surfaces.position[slot];
+    const Index medium = prepared.medium_of(surfaces.object[slot], path.mirrored);
+    Vec3 left(share);  // of the light on its way inside of the object that is left or not entered
+    if (material.absorbs && path.inside.contains(medium))
+        for (int c = 0; c < 3; ++c)
+            left[c] *= std::exp(-material.absorption[c] * surfaces.depth[slot]);
+    Path through = path;
+    const double ratio = cross_boundary(prepared, onward.media, through.inside, medium);
+    // A displaced normal may point away from the eye.
+    const double facing = -view.dot(normal), cosine = std::abs(facing);
+    const double rest = 1 + ratio * ratio * (cosine * cosine - 1);
+    if (std::abs(ratio - 1) < least_cosine) {
+        through.weight *= surfaces.transmittance[slot] * left;
+        onward.next.push(position, view, through);
+        return false;
+    }
+    if (rest >= 0) {
+        through.weight *= surfaces.transmittance[slot] * left;
+        ++through.level;
+        const Vec3 to_eye = facing < 0 ? -normal : normal;
+        const Vec3 bent = view * ratio + to_eye * (ratio * cosine - std::sqrt(rest));
+        onward.next.push(position, bent.normalized(), through);
+        return false;
+    }
+    // POV-Ray does not filter what is reflected totally; a hole of the alpha map reflects as well.
+    const double there = material.opacity < 1 ? 1 : 1 - surfaces.alpha[slot];
+    Path back = path;
+    ++back.level;
+    back.mirrored = true;
+    back.weight *= left * there;
+    onward.next.push(position, at.mirrored(normal).normalized(), back);
+    return true;
+}
 
 void send_back(const Meeting& at, const Vec3& direction, const Vec3& share) {
     if (share == Vec3(0)) return;
@@ -157,6 +158,16 @@ void reflect_by(const Meeting& at, const PreparedLobe& lobe, double share) {
     }
 }
 
+// Glass that blurs: each of its mirrors bends a part of the light and reflects it.
+void frost(const Meeting& at) {
+    const PreparedLobe& lobe = at.material().lobes[0];
+    const double share = 1 / double(lobe.mirrors.size());
+    for (const Vec3& offset : lobe.mirrors) {
+        const Vec3 by = at.displaced(offset);
+        if (!transmit(at, by, share)) reflect(at, by, lobe.reflection * share, at.mirrored(by));
+    }
+}
+
 }  // namespace
 
 void scatter(const PreparedScene& prepared, const SurfacePoints& surfaces, std::size_t slot,
@@ -164,12 +175,15 @@ void scatter(const PreparedScene& prepared, const SurfacePoints& surfaces, std::
     if (path.level >= onward.max_depth) return;
     const PreparedMaterial& material = *surfaces.material[slot];
     const double alpha = surfaces.alpha[slot];
+    const Meeting at = {prepared, surfaces, slot, path, onward};
+    if (material.frosts && surfaces.front[slot] != 0 && alpha > 0 &&
+        prepared.frosts(surfaces.object[slot]))
+        return frost(at);
     bool total = false;  // internal reflection
     if ((!material.opaque || alpha == 0) && surfaces.transmittance[slot] != Vec3(0))
-        total = transmit(prepared, surfaces, slot, path, onward);
+        total = transmit(at, surfaces.normal[slot]);
     // Where the surface itself is opaque POV-Ray looks for no total reflection.
     if (alpha == 0 || (total && material.opacity < 1)) return;
-    const Meeting at = {prepared, surfaces, slot, path, onward};
     if (material.coat) reflect_coat(at);
     if (!material.mirrors) return;
     const LobeMix& mix = surfaces.lobes[slot];

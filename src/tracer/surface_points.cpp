@@ -20,6 +20,7 @@ void SurfacePoints::resize(std::size_t capacity) {
     share.resize(capacity);
     depth.resize(capacity);
     lobes.resize(capacity);
+    front.resize(capacity);
     object.resize(capacity);
     material.resize(capacity);
     inside.resize(capacity);
@@ -30,7 +31,7 @@ namespace {
 // What the geometry says of a point, before the material is asked.
 struct Geometry {
     Vec3 normal = {}, facet_normal = {};
-    Vec3 front = {};  // of a facet: the normal that tells its sides
+    Vec3 front = {};  // the normal that tells the sides
     Vec2 texcoord = {};
     Vec3 vertex_color = Vec3(1);
     double vertex_alpha = 1;
@@ -87,6 +88,7 @@ Geometry on_sphere(const Sphere& sphere, const Vec3& point, bool textured) {
     const Vec3 normal = (point - sphere.center) * (1 / sphere.radius);
     return {.normal = normal,
             .facet_normal = normal,
+            .front = normal,
             .texcoord = textured ? sphere_texcoord(normal) : Vec2(0)};
 }
 
@@ -94,6 +96,7 @@ Geometry on_plane(const PlaneFrame& frame, const Vec3& point) {
     const Vec3 offset = point - frame.origin;
     return {.normal = frame.normal,
             .facet_normal = frame.normal,
+            .front = frame.normal,
             .texcoord = {offset.dot(frame.u), offset.dot(frame.v)}};
 }
 
@@ -287,6 +290,7 @@ std::size_t find_surface_point(const PreparedScene& prepared, const Vec3& origin
         surfaces.reflected.set(at, direction - g.normal * (2 * direction.dot(g.normal)));
         surfaces.share[at] = 1;
         surfaces.depth[at] = hit.t;
+        surfaces.front[at] = char(!(g.front.dot(direction) > 0));
         surfaces.object[at] = hit.object;
     };
     place(slot);

@@ -276,6 +276,7 @@ void MaterialReader::read() {
     read_clearcoat();
     read_emission();
     read_normal();
+    name_clear();
     name_the_rest();
     if (alpha > 0 || material.opacity > 0) return;
     material.specular = 0;

@@ -84,6 +84,7 @@ struct MaterialReader {
     void read_transmission();
     /// What becomes of it; after the roughness.
     void read_volume();
+    void name_clear();
     bool has_thickness(const tinygltf::Value& volume);
     void read_diffuse_transmission();
     void read_transmitted_color(const tinygltf::Value& given);

@@ -30,7 +30,10 @@ void MaterialReader::read_transmission() {
     const double a = double(material.opacity);
     material.opacity = float(a * (1 - transmitted));
     material.transmission = float(a * transmitted / (1 - a * (1 - transmitted)));
-    if (mean_roughness() > visibly_rough)
+}
+
+void MaterialReader::name_clear() {
+    if (transmitted > 0 && mean_roughness() > visibly_rough && !frosts(material))
         note_loss(Loss::approximated,
                   "transmission is approximate: a rough surface is shown as clear");
 }
@@ -62,6 +65,7 @@ void MaterialReader::read_volume() {
         const double f0 = std::pow((n - 1) / (n + 1), 2);
         material.ior = float(n);
         material.fresnel = true;
+        if (mean_roughness() > visibly_rough) material.roughness = float(mean_roughness());
         const Illumination illumination = reader.options.illumination;
         const Color mirror = full_lobe(mean_roughness(), 1, f0, illumination).reflection;
         const DielectricReflectance reflects = dielectric();

@@ -104,6 +104,11 @@ bool takes_reflected(const Material& material) {
 
 bool mirrors(const Coat& coat) { return coat.reflection > 0 || coat.grazing > 0; }
 
+bool frosts(const Material& m) {
+    return m.opacity < 1 && m.ior != 1 && m.roughness > 0 && m.mirrors > 1 && !m.alpha_map &&
+           !m.specular_lobes && !m.blend && !m.coat;
+}
+
 bool blurs(const Material& material) {
     const auto rough = [](const Color& reflection, float roughness) {
         return reflection != Color(0) && roughness > 0;

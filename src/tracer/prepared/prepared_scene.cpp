@@ -52,8 +52,9 @@ PreparedMaterial prepare(const Material& m, const Color& ambient_light) {
                           .passes = !opaque(m) || m.sides == Sides::front,
                           .textured = std::holds_alternative<ImageMap>(m.pattern)};
     f.blurs = blurs(m);
+    f.frosts = frosts(m);
     f.conserves = takes_reflected(m);
-    const int mirrors = f.blurs ? m.mirrors : 1;
+    const int mirrors = f.blurs || f.frosts ? m.mirrors : 1;
     if (m.specular_lobes)
         for (const SpecularLobe& lobe : m.specular_lobes->lobes)
             f.lobes.push_back(prepare(lobe, mirrors));
@@ -145,9 +146,11 @@ PreparedScene::PreparedScene(const Scene& given, const PreparedScene* earlier, b
         blended |= made.other != nullptr;
         bends |= made.passes && (made.ior != 1 || made.absorbs);
     }
-    for (const Mesh& mesh : scene.meshes)
-        own_textures.push_back(materials[mesh.material].blurs &&
-                               vertex_textures(mesh, scene.materials[mesh.material]).any());
+    for (const Mesh& mesh : scene.meshes) {
+        const PreparedMaterial& material = materials[mesh.material];
+        own_textures.push_back((material.blurs || material.frosts) &&
+                               vertex_textures(mesh, *material.source).any());
+    }
     for (const Texture& t : scene.textures) textures.emplace_back(t);
     for (const Plane& plane : scene.planes) {
         const PlaneFrame frame = plane_frame(plane);

@@ -45,6 +45,7 @@ struct PreparedMaterial {
     bool textured = false;
     bool shines = false, mirrors = false;  ///< any lobe does
     bool blurs = false;                    ///< any lobe has several mirrors
+    bool frosts = false;                   ///< see frosts()
     bool conserves = false;                ///< see takes_reflected()
     bool takes_reflected = false;          ///< it or its coat
     std::optional<PreparedCoat> coat = {};
@@ -89,7 +90,7 @@ struct PreparedScene {
     Bounds surroundings;  ///< of facets and spheres: their box, twice as large
     std::vector<PreparedMaterial> materials = {};  ///< by material
     std::vector<TextureLookup> textures = {};      ///< by texture
-    std::vector<char> own_textures = {};           ///< by mesh: its vertices have some, and blur
+    std::vector<char> own_textures = {};           ///< by mesh: its vertices have some, and mirrors
     std::vector<SourceGroup> lights = {};
     std::vector<PreparedPlane> planes = {};
     std::vector<Index> translucent_shapes = {};  ///< spheres and planes, as objects
@@ -117,6 +118,11 @@ struct PreparedScene {
     }
     const PreparedMaterial& material_in(Index medium) const {
         return material_of(medium < objects() ? medium : medium - objects());
+    }
+    /// Does what lies behind the object blur?
+    bool frosts(Index object) const {
+        return material_of(object).frosts &&
+               (object >= first_sphere() || own_textures[scene.instances[object].mesh] == 0);
     }
     /// Are mirrors displaced in the space of the mesh, and not in that of the world?
     bool displaces_in_mesh(Index object) const {
