@@ -1,6 +1,7 @@
 #include "exporters/pov/plan.h"
 
 #include "base/hash.h"
+#include "base/text/ascii.h"
 #include "exporters/pov/sdl.h"
 #include "scene/check_options.h"
 #include "scene/surface/vertex_textures.h"
@@ -79,7 +80,7 @@ struct Planner {
     std::map<std::tuple<Index, Look::Surface, bool>, Index> known = {};
     sdl::Names look_names = {}, mesh_names = {}, file_names = {};
 
-    void lose(const Loss& loss) {
+    void note_loss(const Loss& loss) {
         const Losses& known_losses = plan.losses;
         if (std::find(known_losses.begin(), known_losses.end(), loss) == known_losses.end())
             plan.losses.push_back(loss);
@@ -204,9 +205,9 @@ struct Planner {
         const double first = std::min(0.0, low), last = std::max(size - 1.0, high);
         if (last - first + 1 <= double(most_tiles) * std::max(size, 2))
             return {size, int(first), int(last - first + 1)};
-        lose({Loss::approximated, texture.name,
-              "the clamped image is used so far outside of its "
-              "edges that it is repeated there"});
+        note_loss({Loss::approximated, texture.name,
+                   "the clamped image is used so far outside of its "
+                   "edges that it is repeated there"});
         return {size, low < 0 ? -size : 0, size + (low < 0 ? size : 0) + (high >= size ? size : 0)};
     }
 
@@ -235,9 +236,9 @@ struct Planner {
         out.v = axis(texture, texture.wrap_v, raster.height, part[1]);
         if (double(out.u.count) * out.v.count > most_texels &&
             (texture.wrap_u != Wrap::repeat || texture.wrap_v != Wrap::repeat)) {
-            lose({Loss::approximated, texture.name,
-                  "the image is too large to hold its mirrored or "
-                  "clamped surroundings, and repeats"});
+            note_loss({Loss::approximated, texture.name,
+                       "the image is too large to hold its mirrored or "
+                       "clamped surroundings, and repeats"});
             out.u = {raster.width, 0, raster.width};
             out.v = {raster.height, 0, raster.height};
         }
@@ -263,9 +264,9 @@ struct Planner {
             float value = 0;
             std::memcpy(&value, data.data() + i, sizeof value);
             if (float(Imath::half(value)) == value) continue;
-            lose({Loss::approximated, texture.name,
-                  "POV-Ray reads float images with 11 significant "
-                  "bits"});
+            note_loss({Loss::approximated, texture.name,
+                       "POV-Ray reads float images with 11 significant "
+                       "bits"});
             return;
         }
     }
@@ -283,39 +284,36 @@ struct Planner {
         const bool own_tint =
             m.specular_color || (m.specular_lobes && m.specular_lobes->color.texture != no_index);
         if (m.normal_map)
-            lose({Loss::dropped, m.name,
-                  "its normal map is dropped: POV-Ray has none in tangent space"});
+            note_loss({Loss::dropped, m.name,
+                       "its normal map is dropped: POV-Ray has none in tangent space"});
         if (product && m.metallic > 0 && !own_tint)
-            lose({Loss::approximated, m.name,
-                  "highlights and reflections of the textured metal take no "
-                  "vertex colours: approximate"});
+            note_loss({Loss::approximated, m.name,
+                       "highlights and reflections of the textured metal take no "
+                       "vertex colours: approximate"});
         if (look.tinted && takes_reflected(m) && m.metallic > 0 && !own_tint)
-            lose({Loss::approximated, m.name,
-                  "vertex colours tint what its reflection takes from the light that it scatters"});
+            note_loss(
+                {Loss::approximated, m.name,
+                 "vertex colours tint what its reflection takes from the light that it scatters"});
         if (product && m.opacity < 1)
-            lose({Loss::approximated, m.name,
-                  "vertex colours over a translucent texture also "
-                  "tint what lies behind"});
+            note_loss({Loss::approximated, m.name,
+                       "vertex colours over a translucent texture also "
+                       "tint what lies behind"});
     }
 
     void note_limits(const RenderOptions& render) {
         if (render.max_depth > most_trace_levels)
-            lose({Loss::approximated, "max_depth",
-                  fmt::format("POV-Ray follows at most {} ray "
-                              "segments",
-                              most_trace_levels)});
+            note_loss({Loss::approximated, "max_depth",
+                       fmt::format("POV-Ray follows at most {} ray segments", most_trace_levels)});
         if (!render.antialiasing && render.samples > most_subpixels)
-            lose({Loss::approximated, "samples",
-                  fmt::format("POV-Ray's grid has at most {0} x {0} "
-                              "samples",
-                              most_subpixels)});
+            note_loss(
+                {Loss::approximated, "samples",
+                 fmt::format("POV-Ray's grid has at most {0} x {0} samples", most_subpixels)});
     }
 };
 
 bool plain_stem(const std::string& stem) {
     const auto harmless = [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-               c == '_' || c == '-' || c == '.';
+        return is_letter_or_digit(c) || c == '_' || c == '-' || c == '.';
     };
     return !stem.empty() && stem[0] != '-' && std::all_of(stem.begin(), stem.end(), harmless);
 }

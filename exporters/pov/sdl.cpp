@@ -1,5 +1,6 @@
 #include "exporters/pov/sdl.h"
 
+#include "base/text/ascii.h"
 #include "base/text/text.h"
 
 #include <array>
@@ -16,10 +17,6 @@ void append_chars(std::string& out, Format... value) {
     std::array<char, 64> buffer;
     const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value...);
     out.append(buffer.data(), result.ptr);
-}
-
-bool alphanumeric(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
 }
 
 // Inside a character of several bytes in UTF-8.
@@ -72,7 +69,7 @@ std::string word(std::string_view text) {
     std::string out;
     for (const char c : text) {
         if (out.size() == longest_word) break;
-        if (alphanumeric(c))
+        if (is_letter_or_digit(c))
             out += c;
         else if (!out.empty() && out.back() != '_')
             out += '_';

@@ -1,5 +1,6 @@
 #include "exporters/tachyon/images.h"
 
+#include "base/text/ascii.h"
 #include "exporters/shared/targets.h"
 #include "image/texels.h"
 
@@ -20,8 +21,7 @@ constexpr std::string_view mark = "P6\n# penumbra\n";
 std::string safe_stem(const std::string& stem) {
     std::string safe;
     for (const char c : stem) {
-        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-                           (c >= '0' && c <= '9') || c == '-' || c == '_' || c == '.';
+        const bool plain = is_letter_or_digit(c) || c == '-' || c == '_' || c == '.';
         safe += plain ? std::string(1, c) : fmt::format("={:02x}", static_cast<unsigned char>(c));
     }
     return safe;
@@ -31,8 +31,7 @@ std::string safe_stem(const std::string& stem) {
 bool is_image_name(std::string_view name, const std::string& stem) {
     if (!name.starts_with(stem + "-") || !name.ends_with(".ppm")) return false;
     const std::string_view number = name.substr(stem.size() + 1, name.size() - stem.size() - 5);
-    return !number.empty() &&
-           std::ranges::all_of(number, [](char c) { return c >= '0' && c <= '9'; });
+    return !number.empty() && std::ranges::all_of(number, is_digit);
 }
 
 TexelSource texels_of(const Texture& texture) {

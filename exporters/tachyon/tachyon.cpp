@@ -175,10 +175,18 @@ void write_instance(Output& out, const Instance& instance) {
         write_smooth(out, instance, mesh);
 }
 
+void write_plane(Output& out, const Plane& plane) {
+    const auto note = [&](bool lost, const char* what) {
+        if (lost) out.note_loss(Loss::approximated, plane.name, "a plane", what);
+    };
+    note(!plane.casts_shadow, "it casts shadows");
+    note(!plane.in_mirrors, "mirrors show it");
+    out.text.add("PLANE CENTER {} NORMAL {} TEXTURE {}\n", vector(plane.point),
+                 vector(plane.normal), texture_of(out, plane));
+}
+
 void write_objects(Output& out) {
-    for (const Plane& p : out.scene.planes)
-        out.text.add("PLANE CENTER {} NORMAL {} TEXTURE {}\n", vector(p.point), vector(p.normal),
-                     texture_of(out, p));
+    for (const Plane& plane : out.scene.planes) write_plane(out, plane);
     for (const Sphere& s : out.scene.spheres)
         out.text.add("SPHERE CENTER {} RAD {:.7g} TEXTURE {}\n", vector(s.center), s.radius,
                      texture_of(out, s.material));

@@ -1,6 +1,7 @@
 #include "base/temporary.h"
 
 #include "base/hash.h"
+#include "base/text/ascii.h"
 
 #include <unistd.h>
 
@@ -39,9 +40,7 @@ std::string machine_mark() {
     hash.add(fs::read_symlink("/proc/self/ns/pid", ignored).native());
     std::string mark = host.substr(0, longest_host);
     for (char& c : mark) {
-        const bool plain =
-            (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
-        if (!plain) c = '_';
+        if (!is_letter_or_digit(c) && c != '-') c = '_';
     }
     return mark + '-' + text_of(hash.digest()).substr(0, 8) + '.';
 }

@@ -101,7 +101,8 @@ std::span<const char* const> surroundings_names();
 
 /// Gives the scene one of them in place of the environment that it has: adds its image to the
 /// textures, and sets Environment::name, texture and before_camera. What else an Environment says
-/// stays, or is the default. Lights that the scene has stay, too.
+/// stays, or is the default. Lights that the scene has stay, too. Throws Error (input: not enough
+/// memory).
 Environment& set_surroundings(Scene& scene, Surroundings which);
 
 /// Gives the scene an image of its textures as environment, likewise.
@@ -114,7 +115,8 @@ Environment& set_uniform_environment(Scene& scene, const Color& radiance);
 /// a part of all directions, and a Sky, or a mirror_sky where the camera does not see it. Phong
 /// lobes are widened by as much as the lights stand for, so that surfaces do not show them one by
 /// one. normalise() does so. Does nothing to a scene without an environment.
-/// Precondition: defects(scene) finds nothing in environment, cameras and textures.
+/// Precondition: defects(scene) finds nothing in environment, cameras and textures, and that of
+/// bounds().
 void light_by_environment(Scene& scene);
 
 /// A scene in the units that both renderers work in. POV-Ray's tolerances are absolute, so all

@@ -92,6 +92,7 @@ class Tracer {
                                     const Overrides& overrides = {}) const;
 
     /// Whether that ray hits an object that is no backdrop: what CompareOptions::covered counts.
+    /// Throws Error (usage where the options make no picture).
     std::vector<bool> subject_seen(const RenderOptions& options) const;
 
     const NormalisedScene& scene() const;

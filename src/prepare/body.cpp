@@ -1,6 +1,7 @@
 #include "prepare/body.h"
 
 #include "base/hash.h"
+#include "prepare/weld.h"
 #include "scene/defects.h"
 #include "scene/sides.h"
 #include "scene/transforms.h"
@@ -16,12 +17,6 @@
 #include <vector>
 
 namespace penumbra {
-
-// Equal numbers have equal bits, 0 and -0 too.
-std::uint64_t hash_of_point(const Vec3f& p) {
-    const std::array<float, 3> numbers = {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F};
-    return hash_of(std::as_bytes(std::span(numbers)));
-}
 
 namespace {
 

@@ -2,9 +2,9 @@
 
 #include "base/hash.h"
 #include "base/parallel.h"
-#include "prepare/body.h"
 #include "prepare/scale.h"
 #include "prepare/sieve.h"
+#include "prepare/weld.h"
 
 #include <algorithm>
 #include <span>

@@ -1,7 +1,7 @@
 #include "prepare/small_objects.h"
 
-#include "prepare/body.h"
 #include "prepare/scale.h"
+#include "prepare/weld.h"
 #include "scene/tolerances.h"
 #include "scene/transforms.h"
 
@@ -92,13 +92,9 @@ bool has_short_edge(const Mesh& mesh, const Matrix& transform, double least) {
     });
 }
 
-struct PositionHash {
-    std::size_t operator()(const Vec3f& p) const { return hash_of_point(p); }
-};
-
 // Around each part of a mesh that hangs together.
 std::vector<Bounds> boxes_of_parts(const Mesh& mesh) {
-    std::unordered_map<Vec3f, Index, PositionHash> places;
+    std::unordered_map<Vec3f, Index, PointHash> places;
     std::vector<Index> parent(mesh.positions.size());
     for (Index i = 0; i < parent.size(); ++i)
         parent[i] = places.try_emplace(mesh.positions[i], i).first->second;

@@ -1,4 +1,5 @@
 // What a camera's light meter would say.
+#include "base/luminance.h"
 #include "scene/check_options.h"
 
 #include "penumbra/tracer.h"
@@ -40,8 +41,7 @@ double highlight_of(const std::vector<Color>& pixels) {
 double mean_stops(const std::vector<Color>& pixels, double darkest) {
     double sum = 0;
     for (const Color& c : pixels) {
-        const double y = 0.2126 * double(c.x) + 0.7152 * double(c.y) + 0.0722 * double(c.z);
-        sum += std::log2(std::max(y, darkest));
+        sum += std::log2(std::max(luminance(Vec3(c)), darkest));
     }
     return sum / double(pixels.size());
 }

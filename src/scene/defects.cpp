@@ -174,6 +174,13 @@ struct Examiner {
                 who + " has a penumbra that is not positive");
     }
 
+    void image_of(const Texture& t) {
+        const auto& [width, height, channels, depth, data] = t.raster;
+        require(width >= 1 && height >= 1 && channels >= 1 && channels <= 4 &&
+                    data.size() == t.raster.texels() * std::size_t(channels) * std::size_t(depth),
+                fmt::format("texture '{}' has no image, or not all of it", t.name));
+    }
+
     // An image of all directions.
     void surrounding(Index texture, const Matrix& rotation, const std::string& who) {
         require(texture < scene.textures.size(), who + " refers to a missing texture");
@@ -212,6 +219,7 @@ std::vector<std::string> defects(const Scene& scene) {
                  background, sky, mirror_sky, environment, ambient] = scene;
     Examiner examine{scene};
     for (const Material& m : materials) examine.material(m);
+    for (const Texture& t : textures) examine.image_of(t);
     for (const Mesh& m : meshes) examine.mesh(m);
     for (const Instance& i : instances) examine.instance(i);
     examine.require(instances.size() < no_index, "there are more instances than can be numbered");
@@ -237,6 +245,15 @@ std::vector<std::string> camera_defects(const Camera& camera) {
     const Scene none;
     Examiner examine{none};
     examine.camera(camera);
+    return std::move(examine.found);
+}
+
+std::vector<std::string> environment_defects(const Scene& scene) {
+    Examiner examine{scene};
+    for (const Texture& t : scene.textures) examine.image_of(t);
+    for (const Camera& c : scene.cameras) examine.camera(c);
+    if (scene.environment) examine.environment(*scene.environment);
+    examine.require(scene.camera < scene.cameras.size(), "the scene has no camera");
     return std::move(examine.found);
 }
 

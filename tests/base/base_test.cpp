@@ -3,6 +3,7 @@
 #include "base/descriptor.h"
 #include "base/hash.h"
 #include "base/temporary.h"
+#include "base/text/ascii.h"
 #include "base/text/decomposed.h"
 #include "base/text/suggest.h"
 #include "base/text/text.h"
@@ -72,6 +73,21 @@ TEST_CASE("extensions and letters are compared in lower case") {
     CHECK(trimmed(" \ta b\t ") == "a b");
     CHECK(trimmed(" \t").empty());
     CHECK(trimmed("\ra\r ", " \r") == "a");
+}
+
+TEST_CASE("letters and digits are those of ASCII") {
+    int letters = 0, digits = 0, either = 0;
+    for (int c = -128; c < 128; ++c) {
+        letters += is_letter(char(c)) ? 1 : 0;
+        digits += is_digit(char(c)) ? 1 : 0;
+        either += is_letter_or_digit(char(c)) ? 1 : 0;
+    }
+    CHECK(letters == 52);
+    CHECK(digits == 10);
+    CHECK(either == 62);
+    for (const char c : {'a', 'z', 'A', 'Z'}) CHECK(is_letter(c));
+    for (const char c : {'`', '{', '@', '[', '0', '\xe9'}) CHECK_FALSE(is_letter(c));
+    CHECK((is_digit('0') && is_digit('9')));
 }
 
 TEST_CASE("quoted words stay on one line and are cut between characters") {

@@ -208,6 +208,14 @@ TEST_CASE("a Tachyon scene, says what Tachyon lacks") {
     CHECK(has(adaptive.text, "ANTIALIASING 4 "));
 }
 
+TEST_CASE("a Tachyon scene, says that a studio's floor is one like any other") {
+    Scene scene = stage();
+    scene.planes = {{.name = "floor", .material = 0, .casts_shadow = false, .in_mirrors = false}};
+    CHECK(Written(scene).exported.losses ==
+          Losses{{Loss::approximated, "floor", "it casts shadows"},
+                 {Loss::approximated, "floor", "mirrors show it"}});
+}
+
 TEST_CASE("a Tachyon light, is 1 in the middle of the scene and fades as ours") {
     Scene scene = stage();
     scene.spheres = {{"ball", {0, 0, 0}, 1, 0}};

@@ -114,6 +114,23 @@ TEST_CASE("Preconditions, of cameras are asserted") {
     CHECK(rendered_by(along_up()));
 }
 
+TEST_CASE("Preconditions, of environments are asserted") {
+    NEEDS_ASSERTIONS;
+    const auto lit = [](auto change) {
+        return aborts([&] {
+            Scene scene = sheet();
+            set_uniform_environment(scene, Color(1));
+            change(scene);
+            light_by_environment(scene);
+        });
+    };
+    CHECK_FALSE(lit([](Scene&) {}));
+    CHECK(lit([](Scene& s) { s.environment->texture = 7; }));
+    CHECK(lit([](Scene& s) { s.environment->sources = -1; }));
+    CHECK(lit([](Scene& s) { s.textures.back().raster = {}; }));
+    CHECK(lit([](Scene& s) { s.camera = no_index; }));
+}
+
 TEST_CASE("Preconditions, within the library are asserted") {
     NEEDS_ASSERTIONS;
     CHECK_FALSE(aborts([] { place_of(sheet(), 0); }));

@@ -198,6 +198,18 @@ TEST_CASE("defects, are named one by one") {
     CHECK(defects(one_sphere(1)).empty());
 }
 
+TEST_CASE("defects, name images that are not whole") {
+    Scene scene = one_sphere(1);
+    scene.textures = {{.name = "none"}, {.name = "cut"}, {.name = "whole"}};
+    for (const std::size_t i : {1U, 2U})
+        scene.textures[i].raster = {.width = 2, .height = 1, .channels = 3, .depth = Depth::u16};
+    scene.textures[1].raster.data.resize(11);
+    scene.textures[2].raster.data.resize(12);
+    CHECK(defects(scene) ==
+          std::vector<std::string>{"texture 'none' has no image, or not all of it",
+                                   "texture 'cut' has no image, or not all of it"});
+}
+
 TEST_CASE("defects, call the parts of a material as the documents do") {
     Scene scene = one_sphere(1);
     Material& m = scene.materials[0];

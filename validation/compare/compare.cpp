@@ -1,6 +1,7 @@
 // Every figure of the parity rule, and the verdict.
 #include "penumbra/compare.h"
 
+#include "base/luminance.h"
 #include "base/memory.h"
 #include "base/text/number.h"
 #include "validation/compare/measure.h"
@@ -76,8 +77,7 @@ void set_encoded(Comparison& result, const RegionSums& sums, const std::string& 
     set(result, "rmse" + suffix, rmse);
     // Equal pictures have no finite ratio; 999 dB is more than float32 values that differ can have.
     set(result, "psnr_db" + suffix, rmse == 0 ? 999 : -20 * std::log10(rmse));
-    set(result, "bias" + suffix,  // ITU-R BT.709
-        0.2126 * bias(0) + 0.7152 * bias(1) + 0.0722 * bias(2));
+    set(result, "bias" + suffix, penumbra::luminance(Vec3(bias(0), bias(1), bias(2))));
 }
 
 void set_whole(Comparison& result, const Measured& measured, const cv::Mat& counted) {

@@ -2,6 +2,7 @@
 // Registration Technique with an Application to Stereo Vision", from coarse to fine.
 #include "validation/diagnosis/registration.h"
 
+#include "base/luminance.h"
 #include "validation/metrics/picture.h"
 
 #include <opencv2/imgproc.hpp>
@@ -31,7 +32,8 @@ std::array<bool, 4> free_parameters(Moves moves) {
 
 cv::Mat luma(const cv::Mat& encoded) {
     cv::Mat result;
-    cv::transform(encoded, result, cv::Matx13f(0.2126F, 0.7152F, 0.0722F));
+    const auto& [red, green, blue] = luminance_weights;
+    cv::transform(encoded, result, cv::Matx13f(float(red), float(green), float(blue)));
     return result;
 }
 

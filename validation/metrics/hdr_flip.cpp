@@ -3,6 +3,7 @@
 // Andersson, Nilsson, Akenine-Moller 2021, "Visualizing and Communicating Errors in Rendered
 // Images", Ray Tracing Gems II, chapter 19, and Andersson, Nilsson, Shirley, Akenine-Moller 2021,
 // "Visualizing Errors in Rendered High Dynamic Range Images", Eurographics.
+#include "base/luminance.h"
 #include "validation/metrics/figures.h"
 #include "validation/metrics/picture.h"
 
@@ -57,8 +58,7 @@ Exposures exposures_for(std::vector<double>& luminances) {
 }
 
 double luminance(const cv::Vec3f& c) {
-    return std::min(0.2126 * double(c[0]) + 0.7152 * double(c[1]) + 0.0722 * double(c[2]),
-                    brightest);
+    return std::min(penumbra::luminance(Vec3(double(c[0]), double(c[1]), double(c[2]))), brightest);
 }
 
 cv::Mat hdr_flip_map(const cv::Mat& test, const cv::Mat& reference, const Exposures& exposures) {

@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/process.h"
+#include "base/text/ascii.h"
 #include "base/text/text.h"
 #include "validation/povray/render_state.h"
 
@@ -17,7 +18,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cctype>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -88,7 +88,7 @@ fs::path output_file(const fs::path& ini) {
 class PlainName {
   public:
     explicit PlainName(const fs::path& ini) : name(ini.filename().string()) {
-        const auto plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("._", c); };
+        const auto plain = [](char c) { return is_letter_or_digit(c) || c == '.' || c == '_'; };
         if (std::ranges::all_of(name, plain)) return;
         static std::atomic<int> count = 0;
         name = fmt::format("penumbra_{}_{}.ini", getpid(), ++count);

@@ -1,4 +1,5 @@
 // JSON -> is this a glTF 2 file, and one that the importer can show?
+#include "base/text/ascii.h"
 #include "base/text/suggest.h"
 #include "importers/gltf/document/checks.h"
 #include "importers/gltf/document/document.h"
@@ -94,7 +95,6 @@ struct Version {
 
 // glTF 2.0, section 3.2.
 bool is_whole(std::string_view digits) {
-    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
     return !digits.empty() && std::ranges::all_of(digits, is_digit) &&
            (digits.size() == 1 || digits.front() != '0');
 }

@@ -3,6 +3,7 @@
 
 #include "base/base64.h"
 #include "base/memory.h"
+#include "base/text/ascii.h"
 #include "base/text/text.h"
 #include "importers/gltf/document/text.h"
 #include "importers/shared/file_names.h"
@@ -10,7 +11,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
 namespace penumbra::gltf {
 namespace {
@@ -61,8 +61,8 @@ std::vector<std::byte> data_uri(std::string_view uri, const std::string& place) 
 bool has_scheme(std::string_view uri) {
     const std::size_t colon = uri.find(':');
     if (colon == std::string_view::npos || colon == 0) return false;
-    return std::all_of(uri.begin(), uri.begin() + std::ptrdiff_t(colon), [](unsigned char c) {
-        return std::isalnum(c) || c == '+' || c == '-' || c == '.';
+    return std::all_of(uri.begin(), uri.begin() + std::ptrdiff_t(colon), [](char c) {
+        return is_letter_or_digit(c) || c == '+' || c == '-' || c == '.';
     });
 }
 

@@ -3,6 +3,7 @@
 #include "importers/gltf/nodes/animation_pointer.h"
 
 #include "base/loss_tally.h"
+#include "base/text/ascii.h"
 #include "importers/gltf/document/document.h"
 #include "importers/gltf/document/schema.h"
 #include "importers/gltf/nodes/pose.h"
@@ -104,7 +105,7 @@ constexpr std::array animatable_transforms = {
 // A number of at most nine digits, as JSON pointers write it.
 bool is_index(std::string_view word) {
     return !word.empty() && word.size() < 10 && (word.size() == 1 || word.front() != '0') &&
-           std::ranges::all_of(word, [](char c) { return c >= '0' && c <= '9'; });
+           std::ranges::all_of(word, is_digit);
 }
 
 // The next name of a path, which begins with a slash; what is left of it.

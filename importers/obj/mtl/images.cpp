@@ -1,4 +1,5 @@
 // Texture statements of MTL -> the images of a Material.
+#include "base/luminance.h"
 #include "base/memory.h"
 #include "importers/obj/mtl/maker.h"
 #include "importers/obj/text/encoding.h"
@@ -137,7 +138,7 @@ void MaterialMaker::specular_images() {
         const Color ks = values.specular.value_or(Color(0));
         if (ks == Color(0)) lobe.specular = 1;
         if (material.specular_color) {
-            lobe.specular = luma(ks);
+            lobe.specular = luminance(ks);
             material.specular_color.reset();
             note_loss(
                 Loss::approximated, color->line,

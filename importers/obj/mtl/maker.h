@@ -8,9 +8,6 @@
 
 namespace penumbra::obj {
 
-/// Relative luminance of linear Rec. 709 RGB (ITU-R BT.709).
-inline float luma(const Color& c) { return 0.2126F * c.x + 0.7152F * c.y + 0.0722F * c.z; }
-
 /// What metallic_roughness() knows of a surface.
 struct MetallicRoughness {
     float metallic = 0, roughness = 1;

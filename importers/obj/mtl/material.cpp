@@ -1,6 +1,7 @@
 // MTL statements -> Material.
 #include "importers/obj/mtl/material.h"
 
+#include "base/luminance.h"
 #include "base/text/decomposed.h"
 #include "base/text/utf8.h"
 #include "importers/obj/mtl/maker.h"
@@ -97,7 +98,7 @@ void MaterialMaker::highlight() {
     const Color ks = values.specular.value_or(Color(0));
     const float most = std::max({ks.x, ks.y, ks.z});
     const bool grey = ks.x == ks.y && ks.y == ks.z;
-    material.specular = grey ? luma(ks) : most;
+    material.specular = grey ? luminance(ks) : most;
     if (!grey) material.specular_color = ks / most;
     if (values.shininess) material.shininess = std::max(1.0F, *values.shininess / 4);
     if (is_coloured(ks))
@@ -136,7 +137,7 @@ void MaterialMaker::mirror() {
     const bool glass = is_glass(model) && model != 9;
     if (is_mirror(model) || (glass && material.opacity < 1))
         material.reflection = ks;
-    else if (glass && luma(ks) > 0)
+    else if (glass && luminance(ks) > 0)
         note_loss(Loss::dropped, entry.line,
                   fmt::format("the mirror reflection of illum {} is left out", model));
     if (!has_fresnel(model) || material.reflection == Color(0)) return;

@@ -1,5 +1,6 @@
 #include "importers/obj/text/paths.h"
 
+#include "base/text/ascii.h"
 #include "importers/obj/text/encoding.h"
 #include "importers/obj/text/words.h"
 #include "importers/shared/file_names.h"
@@ -41,8 +42,7 @@ Way follow(const ModelFolders& folders, const fs::path& folder, const fs::path& 
 
 // "C:/models/chair.mtl", of a Windows program.
 bool names_drive(std::string_view name) {
-    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-    return name.size() > 1 && name[1] == ':' && letter(name[0]);
+    return name.size() > 1 && name[1] == ':' && is_letter(name[0]);
 }
 
 bool leads_out(const fs::path& path) { return !path.empty() && *path.begin() == ".."; }

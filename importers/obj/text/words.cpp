@@ -1,5 +1,6 @@
 #include "importers/obj/text/words.h"
 
+#include "base/text/ascii.h"
 #include "base/text/text.h"
 #include "importers/obj/text/tally.h"
 
@@ -14,8 +15,6 @@ namespace {
 constexpr std::string_view blanks = " \t\v\f";
 
 constexpr bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\f' && c != '\n'); }
-
-constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 // Takes [+-] off the front of `text`.
 void skip_sign(std::string_view& text) {

@@ -1,13 +1,13 @@
 // Sidecar files and KEY=VALUE settings -> Layer.
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/text/ascii.h"
 #include "base/text/text.h"
 #include "base/toml/section.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
 namespace penumbra {
 
@@ -50,9 +50,7 @@ std::optional<Assignment> split(std::string_view text) {
 
 // TOML wants a digit before the decimal point; people write .5.
 std::string with_leading_zeros(std::string_view text) {
-    const auto digit = [&](std::size_t i) {
-        return i < text.size() && std::isdigit(static_cast<unsigned char>(text[i])) != 0;
-    };
+    const auto digit = [&](std::size_t i) { return i < text.size() && is_digit(text[i]); };
     std::string result;
     char quote = 0;
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -105,11 +103,11 @@ void KeyParts::step() {
         at += end.size();
         skip_to(end, c == '"');
         part();
-    } else if (std::isalnum(static_cast<unsigned char>(c)) != 0 || bare.find(c) != bare.npos ||
+    } else if (is_letter_or_digit(c) || bare.find(c) != bare.npos ||
                static_cast<unsigned char>(c) >= 0x80) {
         while (at < text.size() &&
-               (std::isalnum(static_cast<unsigned char>(text[at])) != 0 ||
-                bare.find(text[at]) != bare.npos || static_cast<unsigned char>(text[at]) >= 0x80))
+               (is_letter_or_digit(text[at]) || bare.find(text[at]) != bare.npos ||
+                static_cast<unsigned char>(text[at]) >= 0x80))
             ++at;
         part();
     } else {

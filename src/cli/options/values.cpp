@@ -1,5 +1,7 @@
 #include "cli/options/values.h"
 
+#include "base/text/ascii.h"
+
 #include "penumbra/error.h"
 
 #include <fmt/format.h>
@@ -165,8 +167,7 @@ OtherRenderer read_renderer(const std::string& option, const std::string& text) 
     const auto equals = text.find('=');
     OtherRenderer result = {.name = text.substr(0, equals)};
     const auto plain = [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-               c == '-' || c == '_' || c == '.';
+        return is_letter_or_digit(c) || c == '-' || c == '_' || c == '.';
     };
     if (equals == std::string::npos || result.name.empty() || result.name.front() == '.' ||
         !std::ranges::all_of(result.name, plain))

@@ -1,6 +1,7 @@
 // Environment -> directional lights and a Sky.
 #include "prepare/environment/cut.h"
 #include "prepare/environment/floor.h"
+#include "scene/defects.h"
 #include "scene/surface/looks.h"
 #include "scene/transforms.h"
 
@@ -10,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 
@@ -89,6 +91,7 @@ Environment& set_uniform_environment(Scene& scene, const Color& radiance) {
 
 void light_by_environment(Scene& scene) {
     if (!scene.environment) return;
+    assert(environment_defects(scene).empty());
     const Environment environment = *scene.environment;
     scene.environment.reset();
     Matrix rotation = environment.rotation;

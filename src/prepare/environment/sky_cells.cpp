@@ -1,5 +1,6 @@
 #include "prepare/environment/sky_cells.h"
 
+#include "base/luminance.h"
 #include "image/texels.h"
 #include "scene/texture/texture_lookup.h"
 
@@ -67,11 +68,11 @@ SkyCells sky_cells(const Texture& texture) {
                                              std::size_t(x))
                       : sample(lookup, (x + 0.5) / across.samples, 1 - (y + 0.5) / down.samples);
             const Vec3 flux = usable(color) * angle;
-            const double luminance = 0.2126 * flux.x + 0.7152 * flux.y + 0.0722 * flux.z;
+            const double energy = luminance(flux);
             const Vec2& turn = turns[std::size_t(x)];
             const Vec3 direction(turn.x * level, height, -turn.y * level);
             const std::size_t cell = cells.at(x / across.per_cell, y / down.per_cell);
-            cells.moments[cell].add({luminance, direction * luminance});
+            cells.moments[cell].add({energy, direction * energy});
             cells.flux[cell] += flux;
         }
     }

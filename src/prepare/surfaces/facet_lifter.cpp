@@ -1,6 +1,6 @@
 #include "prepare/surfaces/facet_lifter.h"
 
-#include "prepare/body.h"
+#include "prepare/weld.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,11 +19,7 @@ struct Pull {
     int level = 0;
 };
 
-struct PositionHash {
-    std::size_t operator()(const Vec3f& p) const { return hash_of_point(p); }
-};
-
-using Pulls = std::unordered_map<Vec3f, std::vector<Pull>, PositionHash>;
+using Pulls = std::unordered_map<Vec3f, std::vector<Pull>, PointHash>;
 
 // Out of the front in the world, unit; 0 for a facet without area.
 Vec3 front_of(const Mesh& mesh, const Matrix& transform, Index facet) {

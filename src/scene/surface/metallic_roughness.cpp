@@ -25,7 +25,6 @@ namespace penumbra {
 //
 // Highlight and mirror are tinted by Material::metallic: at normal incidence a coefficient k gives
 // k (1 - metallic + metallic P). To give F the coefficient must be F over that.
-
 //
 // What is not metal may reflect in a colour too (KHR_materials_specular, specular-glossiness). Then
 // highlight and mirror are tinted by Material::specular_color T with metallic = 1. For one

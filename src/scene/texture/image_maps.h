@@ -11,9 +11,8 @@ namespace penumbra {
 enum class MapUse { pattern, emission, transmission, alpha, lobe_color, lobe_level, normal, blend };
 
 /// Calls visit(map, use) for every ImageMap of a Material, const or not, those without a texture
-/// included,
-/// those of a Blend's other look too. Structs are taken apart by name, so that a new member is an
-/// error here until it has been looked at.
+/// included, and those of a Blend's other look too. Structs are taken apart by name, so that a new
+/// member is an error here until it has been looked at.
 template <class AnyMaterial, class Visit>
 void each_image_map(AnyMaterial& material, Visit visit) {
     auto& [name, color, pattern, ambient, diffuse, specular, shininess, metallic, specular_color,
