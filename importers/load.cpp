@@ -8,7 +8,10 @@
 #include "prepare/complete.h"
 #include "prepare/same_corners.h"
 #include "prepare/small_objects.h"
+#include "scene/surface/vertex_textures.h"
 #include "scene/transforms.h"
+
+#include "penumbra/light_model.h"
 
 #include <fmt/format.h>
 
@@ -271,6 +274,17 @@ Laid lay_well_lit(const Request& request, const LoadOptions& given) {
     }
 }
 
+// Frosted glass whose vertices have colours of their own.
+Losses clear_glass(const Scene& scene) {
+    Losses losses;
+    for (const Mesh& mesh : scene.meshes)
+        if (const Material& m = scene.materials[mesh.material];
+            frosts(m) && vertex_textures(mesh, m).any())
+            losses.push_back({Loss::approximated, mesh.name,
+                              "its rough glass is shown as clear: its vertices have colours"});
+    return losses;
+}
+
 }  // namespace
 
 Imported load_scene(const std::vector<fs::path>& given, const LoadOptions& options) {
@@ -300,6 +314,8 @@ Imported load_scene(const std::vector<fs::path>& given, const LoadOptions& optio
     const Losses by_size =
         losses_by_size(result.scene, box, result.render.width, result.render.height);
     result.losses.insert(result.losses.end(), by_size.begin(), by_size.end());
+    const Losses clear = clear_glass(result.scene);
+    result.losses.insert(result.losses.end(), clear.begin(), clear.end());
     const Losses settled = settle_normal_maps(result.scene, options.normal_maps);
     result.losses.insert(result.losses.end(), settled.begin(), settled.end());
     // What keeps its normal maps is not final: nothing of it can be exported.

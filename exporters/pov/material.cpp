@@ -172,8 +172,8 @@ std::string pattern_text(const Plan& plan, const Look& look, const ImageMap& map
            "texture_map { " + entries + " }" + image_placement(plan, look, map) + "\n}\n";
 }
 
-// Declares the texture of frosted glass where light goes in, and as NAME__inside the other, by which
-// rays go out: where that one is clear their number does not grow again.
+// Declares the texture of frosted glass where light goes in, and as NAME__inside the other, by
+// which rays go out: where that one is clear their number does not grow again.
 std::string declare_frosted(const Plan& plan, const Look& look, const std::string& name) {
     std::string out, entries;
     for (const std::vector<Layer>& layers : frosted_layers(plan, look)) {
@@ -202,7 +202,8 @@ std::string declare_lobes(const Plan& plan, const Look& look, const std::string&
         if (tint != nullptr)
             out += tinted_layers(plan, look, k, *tint);
         else
-            for (const Layer& layer : layers_of(plan, look, k)) out += texture_text(plan, look, layer);
+            for (const Layer& layer : layers_of(plan, look, k))
+                out += texture_text(plan, look, layer);
         const double last = double(std::max<std::size_t>(1, count - 1));
         if (m.specular_lobes && !m.specular_lobes->mixed)
             entries += fmt::format("{}[{} {}] [{} {}]", k == 0 ? "" : " ",
@@ -229,8 +230,7 @@ std::string texture_declaration(const Plan& plan, const Look& look, const std::s
                "#declare " + name + " =\n" +
                pattern_text(plan, look, m.blend->map, fmt::format("[0 {}] [1 {}]", second, first));
     }
-    if (!wears_alpha_map(plan, look))
-        return declare_lobes(plan, look, name, color);
+    if (!wears_alpha_map(plan, look)) return declare_lobes(plan, look, name, color);
     const std::string there = name + "__there";
     const AlphaMap& alpha_map = *m.alpha_map;
     const double from = alpha_map.cutoff ? cutoff_threshold(*alpha_map.cutoff) : 0;

@@ -30,7 +30,7 @@ struct SurfacePoints {
     std::vector<double> share;    ///< of this look in a Blend; 1 without
     std::vector<double> depth;    ///< length of the ray that ended here
     std::vector<LobeMix> lobes;
-    std::vector<char> front;      ///< the normal pointed to the eye before it was turned
+    std::vector<char> front;  ///< the normal pointed to the eye before it was turned
     std::vector<Index> object;
     std::vector<const PreparedMaterial*> material;
     std::vector<MediumStack> inside;  ///< of the ray that ended here

@@ -6,6 +6,8 @@ namespace {
 
 const std::string gold = "color = [0.9, 0.6, 0.2]\nambient = 0\ndiffuse = 0.05\nspecular = 0\n"
                          "reflection = 0.9\nmetallic = 1\n";
+const std::string glass = "color = [0.8, 0.95, 0.9]\nopacity = 0.1\ntransmission = 1\nior = 1.5\n"
+                          "fresnel = true\nreflection = 1\nroughness = 0.4\n";
 const std::string plastic = "color = [0.1, 0.3, 0.6]\nreflection = 1\nfresnel = true\nior = 1.5\n";
 
 // With a sharp and a rough mirror around, which see the ball and one another.
@@ -102,6 +104,20 @@ Feature textured() {
     return feature;
 }
 
+// A glTF body whose surface is as rough as its volume is thick.
+Feature frosted_body() {
+    Gltf gltf = body(egg());
+    json& material = gltf.root["materials"][0];
+    material["pbrMetallicRoughness"]["roughnessFactor"] = 0.45;
+    material["extensions"] = {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                              {"KHR_materials_volume",
+                               {{"thicknessFactor", 1},
+                                {"attenuationDistance", 0.6},
+                                {"attenuationColor", {0.3, 0.8, 0.6}}}}};
+    gltf.root["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_volume"};
+    return modelled("frosted glass, glTF body", std::move(gltf), "");
+}
+
 }  // namespace
 
 std::vector<Feature> mirror_features() {
@@ -137,7 +153,14 @@ std::vector<Feature> mirror_features() {
             masked("rough mirror, alpha mask", false),
             masked("rough mirror, turned alpha mask", true),
             mapped_roughness(),
-            textured()};
+            textured(),
+            worn("frosted glass", glass),
+            worn("frosted glass, 19 ways, half of it scattered",
+                 "color = [0.8, 0.95, 0.9]\ntransmission = 1\nior = 1.5\nreflection = 0.5\n"
+                 "roughness = 0.4\nopacity = 0.5\ndiffuse = 0.6\nspecular = 0.4\nmirrors = 19\n"),
+            modelled("frosted glass, flat facets", body(rock()), glass),
+            modelled("frosted glass, single-sided", body(egg(), false), glass),
+            frosted_body()};
 }
 
 }  // namespace test
