@@ -12,9 +12,9 @@ namespace penumbra {
 namespace {
 
 // What a body stands on and the side that it stands with are not seen at once, so that little is
-// enough to part them: more than in_one_plane and POV-Ray's least distance. Through a sheet that
+// enough to part them: more than rounding and POV-Ray's least distance. Through a sheet that
 // light passes POV-Ray has to see the side, and its shadow.
-constexpr double beneath_a_body = 0.15, beneath_a_body_seen = 0.5;
+constexpr double beneath_a_body = 0.1, beneath_a_body_seen = 0.5;
 
 // By so much larger than others is what is not to move.
 constexpr double by_far = 2;
