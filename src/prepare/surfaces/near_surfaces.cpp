@@ -10,8 +10,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <set>
 #include <string>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -153,7 +153,7 @@ class NearSurfaces {
     bool orthographic_ = false;
     std::vector<GroupedBox> boxes_;
     std::size_t pairs_ = 0;
-    std::set<Index> casters_;
+    std::unordered_set<Index> casters_;
     Near near_;
 };
 

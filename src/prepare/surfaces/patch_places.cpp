@@ -14,10 +14,10 @@ namespace {
 // What a body stands on and the side that it stands with are not seen at once, so that little is
 // enough to part them: more than rounding and POV-Ray's least distance. Through a sheet that
 // light passes POV-Ray has to see the side, and its shadow.
-constexpr double beneath_a_body = 0.1, beneath_a_body_seen = 0.5;
+constexpr double beneath_a_body = 0.06, beneath_a_body_seen = 0.5;
 
-// By so much larger than others is what is not to move.
-constexpr double by_far = 2;
+// By so much larger than others is what is not to move. The step is some 1/50,000 of the largest.
+constexpr double by_far = 16;
 
 // In the order of the file, each upon those before.
 PatchPlaces in_order_of_file(const WorldFacets& facets,
@@ -146,8 +146,11 @@ void tear_off(const WorldFacets& facets, const std::vector<OverlappingPatches>& 
     Shares shares = standing(facets, overlaps, moved, places);
     keep_order(overlaps, places, shares);
     for (const auto& [patch, share] : shares) {
-        places[patch].level *= share;
-        places[patch].torn = true;
+        PatchPlace& place = places[patch];
+        // Within bodies nobody sees which of several is the highest.
+        if (outwards(place) < 0) place.level = std::copysign(1, place.level);
+        place.level *= share;
+        place.torn = true;
     }
 }
 
