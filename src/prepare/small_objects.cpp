@@ -2,7 +2,6 @@
 
 #include "prepare/body.h"
 #include "prepare/scale.h"
-#include "prepare/surfaces/near_surfaces.h"
 #include "scene/tolerances.h"
 #include "scene/transforms.h"
 
@@ -215,8 +214,6 @@ Losses losses_by_size(const Scene& scene, const Bounds& box, int width, int heig
     const std::vector<Object> objects = objects_of(scene);
     note_eaten(scene, objects, box, losses);
     const View view = view_of(scene.cameras[scene.camera], width, height);
-    const Losses near = losses_by_nearness(scene, box, view, height);
-    losses.insert(losses.end(), near.begin(), near.end());
     note_invisible(objects, box, view, height, losses);
     return losses;
 }

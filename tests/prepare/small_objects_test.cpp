@@ -1,5 +1,6 @@
 // What is too small for its scene is said.
 #include "prepare/small_objects.h"
+#include "prepare/surfaces/near_surfaces.h"
 #include "support/small_scenes.h"
 #include "support/support.h"
 
@@ -12,6 +13,10 @@ namespace {
 constexpr int width = 160, height = 120;
 
 Losses losses_of(const Scene& scene) { return losses_by_size(scene, bounds(scene), width, height); }
+
+Losses by_nearness(const Scene& scene) {
+    return losses_by_nearness(scene, bounds(scene), width, height);
+}
 
 // Ground of that side, and a camera that sees one unit around the origin from near.
 Scene ground(float side) {
@@ -73,11 +78,11 @@ TEST_CASE("Sheets that float nearer to others than the tolerance are a loss, whe
     scene.materials = {test::matte(), glazed};
     const bool lets_light_pass = GENERATE(true, false);
     add_card(0.2F, lets_light_pass ? 1 : 0);
-    CHECK(losses_of(scene).empty());
+    CHECK(by_nearness(scene).empty());
     scene.meshes.pop_back();
     scene.instances.pop_back();
     add_card(0.03F, lets_light_pass ? 1 : 0);
-    const Losses losses = losses_of(scene);
+    const Losses losses = by_nearness(scene);
     REQUIRE(losses.size() == 1);
     INFO(losses[0].what);
     CHECK(losses[0].count == 2);
@@ -85,7 +90,7 @@ TEST_CASE("Sheets that float nearer to others than the tolerance are a loss, whe
     CHECK(losses[0].what.find("the nearest is of 'card', 0.03 from") != std::string::npos);
     // From farther away the shadow that an opaque card loses is narrower than a pixel.
     scene.cameras[0].position = {0, 50, 200};
-    CHECK(losses_of(scene).empty() != lets_light_pass);
+    CHECK(by_nearness(scene).empty() != lets_light_pass);
 }
 
 TEST_CASE("Thin parts of a mesh are a loss, whatever else is in the mesh") {

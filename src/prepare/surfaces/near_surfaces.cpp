@@ -4,6 +4,8 @@
 #include "prepare/surfaces/facet_overlaps.h"
 #include "prepare/surfaces/world_facets.h"
 
+#include "penumbra/light_model.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -89,6 +91,7 @@ class NearSurfaces {
     // Of each instance the part where what light passes touches it, or it touches others as such.
     std::vector<Bounds> parts_to_ask() {
         std::vector<Bounds> parts(facets_.scene().instances.size());
+        if (std::ranges::none_of(facets_.scene().materials, see_through)) return parts;
         std::vector<GroupedBox> boxes;
         for (Index i = 0; i < parts.size(); ++i)
             boxes.push_back({grown(facets_.box_of(i), shadow_margin), i, i});
@@ -165,7 +168,8 @@ std::string name_of(const Scene& scene, Index instance) {
 
 }  // namespace
 
-Losses losses_by_nearness(const Scene& scene, const Bounds& box, const View& view, int height) {
+Losses losses_by_nearness(const Scene& scene, const Bounds& box, int width, int height) {
+    const View view = view_of(scene.cameras[scene.camera], width, height);
     NearSurfaces surfaces(scene, box, view, height);
     const Near near = surfaces.find();
     if (near.count == 0) return {};
