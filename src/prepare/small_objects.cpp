@@ -181,10 +181,9 @@ const Object& outlier(const std::vector<Object>& objects) {
                                      [&](const Object& o) { return (o.center - middle).length(); });
 }
 
-void note_invisible(const Scene& scene, const std::vector<Object>& objects, const Bounds& box,
-                    int width, int height, Losses& losses) {
+void note_invisible(const std::vector<Object>& objects, const Bounds& box, const View& view,
+                    int height, Losses& losses) {
     if (objects.empty()) return;
-    const View view = view_of(scene.cameras[scene.camera], width, height);
     const auto seen = [&](const Object& o) { return pixels_across(o, view, height) >= 1; };
     if (std::ranges::any_of(objects, seen)) return;
     if (objects.size() == 1) {
@@ -210,7 +209,8 @@ Losses losses_by_size(const Scene& scene, const Bounds& box, int width, int heig
     Losses losses;
     const std::vector<Object> objects = objects_of(scene);
     note_eaten(scene, objects, box, losses);
-    note_invisible(scene, objects, box, width, height, losses);
+    const View view = view_of(scene.cameras[scene.camera], width, height);
+    note_invisible(objects, box, view, height, losses);
     return losses;
 }
 

@@ -228,6 +228,39 @@ TEST_CASE("part_surfaces, keeps what it lifts together") {
     }
 }
 
+TEST_CASE("part_surfaces, moves neither a body nor the sheet that it stands on, in any order") {
+    const bool sheet_first = GENERATE(true, false), one_sided = GENERATE(true, false);
+    Scene scene = wall();
+    add_box(scene, {-0.3F, -0.3F, 0}, {0.3F, 0.3F, 2}, 1);
+    if (!sheet_first) std::swap(scene.instances[0], scene.instances[1]);
+    if (one_sided)
+        for (Material& m : scene.materials) m.sides = Sides::front;
+    const Losses losses = part_surfaces(scene);
+    REQUIRE(losses.size() == 1);
+    CHECK(losses[0].count == 2);
+    CHECK(losses[0].what.find("off it by 9.4e-06") != std::string::npos);
+    for (const Vec3f& p : scene.meshes[0].positions) CHECK(p.z == 0);
+    const Mesh& box = scene.meshes[1];
+    // The bottom goes where the sheet does not hide what comes later.
+    const double bottom = (sheet_first || one_sided ? -1 : 1) * layer * 0.06;
+    for (std::size_t i = 0; i < box.triangles.size(); ++i)
+        for (const Index corner : box.triangles[i]) {
+            const double z = box.positions[corner].z;
+            CHECK((i < 2 ? z == Approx(bottom) : z == 0 || z == 2));
+        }
+}
+
+TEST_CASE("part_surfaces, leaves the largest sheet where it is, and keeps the order") {
+    Scene scene = wall();
+    add_sheet(scene, 0, 0, 0.6F, 0.5F, 1);
+    add_sheet(scene, 0.3F, 0.2F, 0.9F, 0.7F, 3);
+    std::swap(scene.instances[0], scene.instances[2]);  // the wall is the last one
+    REQUIRE(part_surfaces(scene)[0].count == 4);
+    CHECK(height(scene, 2) == 0);
+    CHECK(height(scene, 1) == Approx(-layer));
+    CHECK(height(scene, 0) == Approx(-2 * layer));
+}
+
 TEST_CASE("part_surfaces, gives an instance a mesh of its own where others show it elsewhere") {
     Scene scene = wall();
     add_sheet(scene, -1, -1, 2, 3, 1);

@@ -1,5 +1,6 @@
 // What is too small for its scene is said.
 #include "prepare/small_objects.h"
+#include "prepare/surfaces/near_surfaces.h"
 #include "support/small_scenes.h"
 #include "support/support.h"
 
@@ -12,6 +13,10 @@ namespace {
 constexpr int width = 160, height = 120;
 
 Losses losses_of(const Scene& scene) { return losses_by_size(scene, bounds(scene), width, height); }
+
+Losses by_nearness(const Scene& scene) {
+    return losses_by_nearness(scene, bounds(scene), width, height);
+}
 
 // Ground of that side, and a camera that sees one unit around the origin from near.
 Scene ground(float side) {
@@ -59,6 +64,33 @@ TEST_CASE("Thin things in a large scene are a loss, which names the size") {
     Scene small = ground(1);
     add_plate(small, {0.4F, 0.004F, 0.3F});
     CHECK(losses_of(small).empty());
+}
+
+TEST_CASE("Sheets that float nearer to others than the tolerance are a loss, where it shows") {
+    Scene scene = ground(20000);
+    const auto add_card = [&](float height, Index material) {
+        test::add_mesh(scene, {{-1, height, -1}, {1, height, -1}, {1, height, 1}, {-1, height, 1}},
+                       {{0, 2, 1}, {0, 3, 2}}, material);
+        scene.instances.back().name = "card";
+    };
+    Material glazed = test::matte();
+    glazed.opacity = 0.5F;
+    scene.materials = {test::matte(), glazed};
+    const bool lets_light_pass = GENERATE(true, false);
+    add_card(0.2F, lets_light_pass ? 1 : 0);
+    CHECK(by_nearness(scene).empty());
+    scene.meshes.pop_back();
+    scene.instances.pop_back();
+    add_card(0.03F, lets_light_pass ? 1 : 0);
+    const Losses losses = by_nearness(scene);
+    REQUIRE(losses.size() == 1);
+    INFO(losses[0].what);
+    CHECK(losses[0].count == 2);
+    CHECK(losses[0].what.find("2 facets lie nearer to others than 0.064") == 0);
+    CHECK(losses[0].what.find("the nearest is of 'card', 0.03 from") != std::string::npos);
+    // From farther away the shadow that an opaque card loses is narrower than a pixel.
+    scene.cameras[0].position = {0, 50, 200};
+    CHECK(by_nearness(scene).empty() != lets_light_pass);
 }
 
 TEST_CASE("Thin parts of a mesh are a loss, whatever else is in the mesh") {

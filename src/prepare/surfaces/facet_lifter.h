@@ -8,11 +8,12 @@
 namespace penumbra {
 
 /// A facet in one plane with others. It goes to the given level above the plane, on the side of its
-/// front or, turned, of its back. On level 0 it stays.
+/// front or, turned, of its back; below it where that is negative. On level 0 it stays.
 struct LevelledFacet {
     Index facet = 0;
-    int level = 0;
+    double level = 0;
     bool turned = false;
+    bool torn = false;  ///< what shares its corners does not go along: it has vertices of its own
     auto operator<=>(const LevelledFacet&) const = default;
 };
 

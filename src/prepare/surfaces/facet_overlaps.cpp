@@ -8,18 +8,21 @@ namespace penumbra {
 namespace {
 
 // Are all corners of one in the plane of the other?
-bool in_plane_of(const WorldFacet& a, const WorldFacet& b) {
-    return std::ranges::all_of(
-        a.corners, [&](const Vec3& p) { return std::abs(b.height(p)) <= in_one_plane; });
+bool in_plane_of(const WorldFacet& a, const WorldFacet& b, double tolerance) {
+    return std::ranges::all_of(a.corners,
+                               [&](const Vec3& p) { return std::abs(b.height(p)) <= tolerance; });
 }
 
 // Does an edge of `a` part the two, but for least_overlap?
 bool parted_by_edges(const WorldFacet& a, const WorldFacet& b, const Vec3& winding) {
     for (std::size_t i = 0; i < 3; ++i) {
         const Vec3& from = a.corners[i];
-        const Vec3 outwards = (a.corners[(i + 1) % 3] - from).cross(winding).normalized();
-        const bool apart = std::ranges::all_of(
-            b.corners, [&](const Vec3& p) { return outwards.dot(p - from) > -least_overlap; });
+        const Vec3 outwards = (a.corners[(i + 1) % 3] - from).cross(winding);
+        const double least = least_overlap * least_overlap * outwards.length2();
+        const bool apart = std::ranges::all_of(b.corners, [&](const Vec3& p) {
+            const double way = outwards.dot(p - from);
+            return way > 0 || way * way <= least;
+        });
         if (apart) return true;
     }
     return false;
@@ -32,23 +35,29 @@ Vec3 winding(const WorldFacet& f) {
 }  // namespace
 
 // Convex polygons in a plane lie apart where an edge of one of them parts them.
-bool overlap(const WorldFacet& a, const WorldFacet& b) {
-    return (in_plane_of(a, b) || in_plane_of(b, a)) && !parted_by_edges(a, b, winding(a)) &&
-           !parted_by_edges(b, a, winding(b));
+bool overlap(const WorldFacet& a, const WorldFacet& b, double tolerance) {
+    return (in_plane_of(a, b, tolerance) || in_plane_of(b, a, tolerance)) &&
+           !parted_by_edges(a, b, winding(a)) && !parted_by_edges(b, a, winding(b));
 }
 
+// Where two overlap by less than least_overlap along some direction in their plane they do not
+// count. Of an axis that leans to the plane only a part is in it.
 GroupedBox boxed(const WorldFacet& facet, std::size_t item, Index group) {
     Bounds box;
-    for (const Vec3& p : facet.corners) {
-        box.extend(p - Vec3(in_one_plane));
-        box.extend(p + Vec3(in_one_plane));
+    for (const Vec3& p : facet.corners) box.extend(p);
+    for (int axis = 0; axis < 3; ++axis) {
+        const double n = facet.normal[axis];
+        const double in_plane = std::sqrt(std::max(0.0, 1 - n * n));
+        const double by = in_one_plane - 0.5 * least_overlap * in_plane;
+        box.min[axis] -= by;
+        box.max[axis] += by;
     }
     return {box, Index(item), group};
 }
 
 namespace {
 
-constexpr std::size_t in_a_leaf = 4;
+constexpr std::size_t in_a_leaf = 8;
 constexpr Index several = no_index;  // groups
 
 bool touch(const Bounds& a, const Bounds& b) {
@@ -69,6 +78,7 @@ class PairTree {
   public:
     PairTree(std::vector<GroupedBox>& boxes, const std::function<void(Index, Index)>& visit)
         : boxes_(boxes), visit_(visit) {
+        nodes_.reserve(boxes.size() / 2);
         if (!boxes.empty()) within(build(0, boxes.size()));
     }
 

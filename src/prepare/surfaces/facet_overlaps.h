@@ -8,8 +8,8 @@
 
 namespace penumbra {
 
-/// Do two facets lie in one plane, and share more of it than an edge?
-bool overlap(const WorldFacet& a, const WorldFacet& b);
+/// Do two facets lie in one plane, but for a tolerance, and share more of it than an edge?
+bool overlap(const WorldFacet& a, const WorldFacet& b, double tolerance = in_one_plane);
 
 /// A box, and which of many it is.
 struct GroupedBox {
@@ -17,7 +17,7 @@ struct GroupedBox {
     Index item = 0, group = 0;
 };
 
-/// Around a facet, and what may lie in one plane with it.
+/// Touches those of all facets that overlap the facet.
 GroupedBox boxed(const WorldFacet& facet, std::size_t item, Index group);
 
 /// Calls visit(item, item) once for every two boxes of different groups that touch. Changes the

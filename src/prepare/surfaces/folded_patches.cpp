@@ -101,6 +101,8 @@ void Folds::add(const std::vector<Index>& facets) {
 void Folds::add_patch(std::span<const Member> members) {
     placed_.clear();
     boxes_.clear();
+    placed_.reserve(members.size());
+    boxes_.reserve(members.size());
     const Index instance = facets_.instance_of(members[0].second);
     for (std::size_t i = 0; i < members.size(); ++i) {
         placed_.push_back(*facets_.at(instance, members[i].second - facets_.first_of(instance)));

@@ -1,11 +1,11 @@
 // Surfaces that lie in one plane: which of them a ray meets first is a matter of rounding, and what
 // lies nearer than POV-Ray's tolerances behind a surface that light passes through is not met at
 // all.
-#include "base/hash.h"
 #include "prepare/scale.h"
 #include "prepare/surfaces/coincident_shapes.h"
 #include "prepare/surfaces/coplanar_patches.h"
 #include "prepare/surfaces/facet_lifter.h"
+#include "prepare/surfaces/patch_places.h"
 #include "prepare/surfaces/world_facets.h"
 #include "scene/defects.h"
 
@@ -18,8 +18,6 @@
 #include <cassert>
 #include <cmath>
 #include <map>
-#include <tuple>
-#include <unordered_map>
 #include <utility>
 
 namespace penumbra {
@@ -34,38 +32,11 @@ constexpr double layer = 2.5e-3;
 // Facets of copies that are made for instances.
 constexpr std::size_t most_copied = most_facets;
 
-struct Place {
-    int level = 0;
-    bool turned = false;
-};
-using Places = std::unordered_map<Index, Place>;  // by patch
-
-// Each patch goes above all that it lies on, in the order of the file.
-Places places_of(const WorldFacets& facets, const std::vector<OverlappingPatches>& overlaps) {
-    Places places;
-    for (const OverlappingPatches& o : overlaps) {
-        if (o.lower != no_index) places[o.lower];
-        places[o.upper].turned |= o.turned;
-    }
-    std::vector<OverlappingPatches> in_order = overlaps;
-    std::ranges::stable_sort(in_order, [&](const auto& a, const auto& b) {
-        const Index i = facets.instance_of(a.upper), j = facets.instance_of(b.upper);
-        return i == j ? a.upper < b.upper : lies_on(facets, j, i);
-    });
-    for (const OverlappingPatches& o : in_order) {
-        Place& upper = places[o.upper];
-        const Place lower = o.lower == no_index ? Place{} : places[o.lower];
-        const bool one_way = o.facing != (upper.turned != lower.turned);
-        upper.level = std::max(upper.level, (one_way ? lower.level : -lower.level) + 1);
-    }
-    return places;
-}
-
 using ByInstance = std::map<Index, std::vector<LevelledFacet>>;
 
 // Facets of patches that lie on others or beneath them, for instances of which some are lifted.
-ByInstance levelled(const WorldFacets& facets, const CoplanarPatches& found) {
-    const Places places = places_of(facets, found.overlaps);
+ByInstance levelled(const WorldFacets& facets, const CoplanarPatches& found,
+                    const PatchPlaces& places) {
     ByInstance result;
     for (Index i = 0; i < facets.scene().instances.size(); ++i) {
         std::vector<LevelledFacet> list;
@@ -79,8 +50,9 @@ ByInstance levelled(const WorldFacets& facets, const CoplanarPatches& found) {
             if (!facet || !named_by) continue;
             // A patch has one side, whatever the winding of its facets.
             const bool other = facet->normal.dot(named_by->normal) < 0;
-            list.push_back({number - first, place->second.level, place->second.turned != other});
-            any |= place->second.level > 0;
+            const auto& [level, turned, torn] = place->second;
+            list.push_back({number - first, level, turned != other, torn});
+            any |= level != 0;
         }
         if (any) result.emplace(i, std::move(list));
     }
@@ -107,7 +79,22 @@ Kind kind_of(const Scene& scene, Index instance, const std::vector<LevelledFacet
 
 struct Count {
     std::size_t lifted = 0, left = 0;
+    double step = 0;  // the longest one, in layers
 };
+
+// Those of `found`, and those that leave their bodies.
+std::vector<TornFacet> all_torn(const WorldFacets& facets, const CoplanarPatches& found,
+                                const ByInstance& levelled) {
+    std::vector<TornFacet> torn = found.torn;
+    for (const auto& [instance, list] : levelled)
+        for (const LevelledFacet& f : list) {
+            const Index first = facets.first_of(instance);
+            if (f.torn)
+                torn.push_back({facets.scene().instances[instance].mesh, f.facet,
+                                found.patch[first + f.facet] - first});
+        }
+    return torn;
+}
 
 // Lifts facets of meshes, of copies where other instances want them as they are.
 Count lift_all(Scene& scene, const ByInstance& levelled, double step) {
@@ -119,8 +106,8 @@ Count lift_all(Scene& scene, const ByInstance& levelled, double step) {
     Count count;
     std::size_t copied = 0;
     for (const auto& [kind, instances] : kinds) {
-        const auto lifted = std::size_t(
-            std::ranges::count_if(kind.facets, [](const LevelledFacet& f) { return f.level > 0; }));
+        const auto lifted = std::size_t(std::ranges::count_if(
+            kind.facets, [](const LevelledFacet& f) { return f.level != 0; }));
         Index mesh = kind.mesh;
         if (uses[mesh] != instances.size()) {
             const std::size_t facets = scene.meshes[mesh].triangles.size();
@@ -137,6 +124,8 @@ Count lift_all(Scene& scene, const ByInstance& levelled, double step) {
         }
         lift(scene.meshes[mesh], scene.instances[instances[0]].transform, kind.facets, step);
         count.lifted += lifted * instances.size();
+        for (const LevelledFacet& f : kind.facets)
+            count.step = std::max(count.step, std::min(1.0, std::abs(f.level)));
     }
     return count;
 }
@@ -154,15 +143,15 @@ void part_facets(Scene& scene, const Bounds& box, Losses& losses) {
                           "many lie in one plane with others that they hang together with: which "
                           "of them shows is a matter of rounding"});
     if (found.overlaps.empty()) return;
-    const ByInstance places = levelled(facets, found);
+    const ByInstance places = levelled(facets, found, places_of(facets, found));
     const double step = layer / facets.factor();
     center_meshes(scene, box.radius());
-    tear(scene, found.torn);
+    tear(scene, all_torn(facets, found, places));
     const Count count = lift_all(scene, places, step);
     say(losses, "facets", count.lifted,
         fmt::format("that lie in one plane with others are lifted off it by {:.2g}: which of them "
                     "shows would be a matter of rounding",
-                    step));
+                    step * count.step));
     say(losses, "facets", count.left,
         "that lie in one plane with others stay there: their instances are too many for a mesh "
         "each");

@@ -4,6 +4,7 @@
 
 #include "prepare/surfaces/mesh_corners.h"
 #include "scene/tolerances.h"
+#include "scene/transforms.h"
 
 #include "penumbra/scene.h"
 
@@ -49,6 +50,11 @@ class WorldFacets {
     }
     const Material& material_of(Index instance) const {
         return scene_.materials[mesh_of(instance).material];
+    }
+
+    /// Around all facets of an instance.
+    Bounds box_of(Index instance) const {
+        return transformed(boxes_[scene_.instances[instance].mesh], places_[instance]);
     }
 
     /// Nothing where the facet is too thin to overlap anything, or is not finite.
