@@ -211,6 +211,24 @@ void light_scene(const Request& request, const LoadOptions& options, Scene& scen
     if (options.sources && scene.environment) scene.environment->sources = *options.sources;
 }
 
+bool says_background(const Request& request) {
+    bool found = false;
+    request.for_each_layer([&](const Layer& layer) {
+        const toml::table* render = layer.table["render"].as_table();
+        found |= render != nullptr && render->contains("background");
+    });
+    return found;
+}
+
+constexpr float middle_grey = 0.18F;
+
+// Before black, what is dark in the light of its own few lamps could not be told from nothing.
+void give_background(Imported& result) {
+    result.scene.background = Color(middle_grey);
+    result.plain_background = result.auto_exposure;
+    if (!result.auto_exposure) result.scene.background *= float(std::exp2(-result.render.exposure));
+}
+
 // Returns the bounds of what they lay. `made_for` is what the surfaces of the models were made for.
 Bounds lay_layers(const Request& request, const LoadOptions& options, Imported& result,
                   std::set<Illumination>& made_for) {
@@ -218,7 +236,8 @@ Bounds lay_layers(const Request& request, const LoadOptions& options, Imported& 
     TextureFiles files;
     NewMaterials made;
     const auto replacements = load_models(request.models, options, result, made_for);
-    result.auto_exposure = !scene.lights.empty();  // a glTF file's
+    const bool own_lights = !scene.lights.empty();
+    result.auto_exposure = own_lights;
     request.for_each_layer([&](const Layer& layer) { lay_materials(layer, scene, files, made); });
     replace_materials(replacements, scene);
     bool sized = false;
@@ -239,6 +258,9 @@ Bounds lay_layers(const Request& request, const LoadOptions& options, Imported& 
         [&](const Layer& layer) { lay_camera(layer, scene, aims, box, aspect); });
     if (!sized && scene.camera != no_index) take_shape(scene.cameras[scene.camera], result.render);
     light_scene(request, options, scene);
+    if (own_lights && options.studio != Studio::black && !scene.environment && !scene.sky &&
+        !says_background(request))
+        give_background(result);
     complete(scene, aspect);
     separate_coincident_facets(result);
     const Losses parted = part_surfaces(scene);

@@ -190,6 +190,18 @@ void add_coat(const Look& look, const Material& m, std::vector<Layer>& layers) {
     if (coat.specular > 0) layers.push_back(layer);
 }
 
+// What sheen covers, by the angle at which it is seen.
+Layer sheen_layer(const Plan& plan, const Sheen& sheen) {
+    const std::array<float, 17> cover = sheen_cover(sheen);
+    Layer layer{.finish = {.diffuse = 1}, .note = "sheen", .by_angle = true};
+    layer.pigment = "aoi color_map {";
+    for (std::size_t i = 0; i < cover.size(); ++i)
+        layer.pigment += fmt::format(" [{} {}]", number(0.5 + double(i) / 32),
+                                     color(sheen_tint(sheen), {.transmit = 1 - cover[i]}));
+    layer.pigment += " }" + own_pattern(plan);
+    return layer;
+}
+
 // Highlight and mirror of a look, and in which layers they stand.
 struct Gloss {
     SpecularLobe shown = {};     ///< beside the other terms, or in a layer of its own colour
@@ -278,6 +290,7 @@ std::vector<Layer> layers_of(const Plan& plan, const Look& look, std::size_t lob
     const Gloss gloss = gloss_in(look, m, lobe);
     std::vector<Layer> layers = lower_layers(plan, look, gloss);
     if (gloss.above) add_mirrors_above(plan, look, gloss, layers);
+    if (covers(m)) layers.push_back(sheen_layer(plan, *m.sheen));
     if (m.coat) add_coat(look, m, layers);
     return layers;
 }

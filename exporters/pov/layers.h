@@ -31,6 +31,7 @@ struct Layer {
     const char* note = "";  ///< a comment
     Passing passing = {};   ///< of the tinted pigment
     VirtualMirror mirror = {};
+    bool by_angle = false;  ///< the pigment asks the angle to the normal
 };
 
 /// The layers of a look that shows specular lobes lobe `lobe`, lowest first.

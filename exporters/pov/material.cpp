@@ -88,6 +88,8 @@ std::string without_patterns(const Plan& plan, const Look& look) {
 std::string normal_text(const Plan& plan, const Look& look, const Layer& layer,
                         const char* before) {
     const auto& [axis, amount, offset] = layer.mirror;
+    // POV-Ray's `aoi` would go by the last normal that was displaced at the same point.
+    if (layer.by_angle) return before + std::string("normal { gradient y, 0 }");
     if (amount == 0) return no_normal(plan, before);
     return fmt::format("{}normal {{ gradient {}, {}{} phase 0.5 scale 1e9{} }}", before,
                        sdl::vector(axis), number(amount),

@@ -81,13 +81,11 @@ Placed placed(const Plan& plan, const Look& look, const ImageMap& map) {
     return image;
 }
 
-// What a pattern would take over from a #default pigment; other warps than turbulence, and
-// transforms, cannot be undone.
+}  // namespace
+
 std::string own_pattern(const Plan& plan) {
     return in_other_scenes(plan) ? " frequency 1 phase 0 ramp_wave turbulence 0 octaves 1" : "";
 }
-
-}  // namespace
 
 std::string color(const Color& c, const Passing& passing) {
     if (passing.filter == 0) return sdl::color(c, passing.transmit);

@@ -16,6 +16,10 @@ struct Passing {
 /// "rgb ...", "rgbt ..." or "rgbft ...".
 std::string color(const Color& c, const Passing& passing);
 
+/// What a pattern would take over from a #default pigment; other warps than turbulence, and
+/// transforms, cannot be undone.
+std::string own_pattern(const Plan& plan);
+
 /// The transforms that lay the image, or a pattern of it, where it belongs.
 std::string image_placement(const Plan& plan, const Look& look, const ImageMap& map);
 

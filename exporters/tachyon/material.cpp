@@ -63,6 +63,7 @@ void note_losses(Output& out, const Material& m, const SpecularLobe& lobe) {
     note.approximated(m.fresnel && mirror, "the mirror is no stronger in grazing light");
     note.approximated(blurs(m), "the reflection is sharp");
     note.approximated(takes_reflected(m) && mirror, "what it reflects is taken from nothing");
+    note.dropped(covers(m), "the sheen is left out");
     note.dropped(m.coat.has_value(), "the clear coat is left out");
     note.approximated(m.metallic > 0 && mirror, "the mirror is not tinted by the metal");
     note.approximated(m.metallic > 0 && m.metallic < 1,

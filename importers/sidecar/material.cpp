@@ -122,6 +122,21 @@ void read_coat(Section& section, Material& material) {
     material.coat = coat;
 }
 
+// sheen = { color = [0.5, 0.4, 0.3], roughness = 0.3 }, or false.
+void read_sheen(Section& section, Material& material) {
+    if (section.is_false("sheen")) {
+        material.sheen.reset();
+        return;
+    }
+    auto inner = section.table("sheen");
+    if (!inner) return;
+    Sheen sheen = material.sheen.value_or(Sheen{.color = Color(1), .roughness = 0.3F});
+    inner->read_factor("color", sheen.color);
+    inner->read("roughness", sheen.roughness, fraction);
+    inner->finish();
+    material.sheen = sheen;
+}
+
 void read_material(Section& section, Material& material, Scene& scene, TextureFiles& files) {
     read_pigment(section, material, scene, files);
     section.read_factor("ambient", material.ambient);
@@ -143,6 +158,7 @@ void read_material(Section& section, Material& material, Scene& scene, TextureFi
     section.read("fresnel", material.fresnel);
     read_absorption(section, material);
     read_coat(section, material);
+    read_sheen(section, material);
     section.read("smooth", material.smooth);
     section.read("sides", material.sides, sides);
     section.finish();

@@ -63,6 +63,7 @@ std::unique_ptr<Metered> meter(const Context& context, Imported& imported) {
     auto metered = std::make_unique<Metered>(normalise(imported.scene, options), options.threads);
     options.exposure = metered_exposure(metered->tracer(), options, {.stop = context.stop});
     context.console.detail(fmt::format("exposure: {:+.2f} EV, metered", options.exposure));
+    if (imported.plain_background) imported.scene.background *= float(std::exp2(-options.exposure));
     return metered;
 }
 

@@ -39,6 +39,9 @@ struct Imported {
     /// render.exposure is still to be set to metered_exposure(): asked for, or the light comes from
     /// a glTF file, in physical units, and nobody says how to expose it.
     bool auto_exposure = false;
+    /// Scene::background stands for what nobody has said: it is to be seen as it is, whatever
+    /// render.exposure will be.
+    bool plain_background = false;
     bool sampled = false;  ///< a sidecar or a setting says where rays go through a pixel
     std::vector<ModelInfo> models = {};
     /// The files that it comes from: those that were read, and those that models name besides,
@@ -92,7 +95,8 @@ Imported read_obj(const std::filesystem::path& file, const ModelOptions& options
 Imported read_obj(std::span<const std::byte> bytes, const std::string& name,
                   const ModelOptions& options = {});
 
-/// What a scene without lights gets.
+/// What a scene without lights gets; with lights, but neither an environment nor a background, it
+/// stands before a grey that is the background but with `black`.
 enum class Studio {
     black,  ///< a rig of three lights, in the dark
     plain,  ///< Surroundings::studio, before a plain background

@@ -6,6 +6,7 @@
 #include "penumbra/scene.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -62,6 +63,18 @@ bool takes_reflected(const Material& material);
 
 /// Does the coat reflect?
 bool mirrors(const Coat& coat);
+
+/// Does the sheen show?
+bool covers(const Material& material);
+
+/// The share of a surface that its sheen covers, seen along it first and head on last: linear in
+/// the angle, between entries that are spaced evenly. It is the directional albedo of Charlie
+/// (Estevez and Kulla 2017, "Production Friendly Microfacet Sheen BRDF") with Ashikhmin's
+/// visibility, times the colour's largest channel (KHR_materials_sheen, albedo scaling).
+std::array<float, 17> sheen_cover(const Sheen& sheen);
+
+/// The colour of what it scatters there: its largest channel is 1.
+Color sheen_tint(const Sheen& sheen);
 
 /// Has the material a reflection of several mirrors? Light that was mirrored once sees a single one
 /// in its place, so that rays grow by the mirrors' number and not by its powers.

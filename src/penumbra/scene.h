@@ -147,6 +147,15 @@ struct Coat {
     bool operator==(const Coat&) const = default;
 };
 
+/// Fibres that stand out of a surface, as of cloth. What they scatter, as a matte surface does,
+/// lies over all terms but reflection and what lies behind, and covers them by a share that rises
+/// in grazing light: see sheen_cover(). Of opaque surfaces.
+struct Sheen {
+    Color color = Color(0);  ///< linear, in [0, 1]
+    float roughness = 0;     ///< [0, 1]
+    bool operator==(const Sheen&) const = default;
+};
+
 /// A Phong surface. Every number is kept in float32, as POV-Ray keeps it.
 struct Material {
     std::string name = {};
@@ -178,6 +187,7 @@ struct Material {
     bool smooth = true;      ///< interpolate normals if the mesh has them
     std::optional<Absorption> absorption = {};
     std::optional<Coat> coat = {};
+    std::optional<Sheen> sheen = {};
     // Of meshes only:
     Sides sides = Sides::both;
     std::optional<ImageMap> emission_map = {};  ///< times `emission`

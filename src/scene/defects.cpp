@@ -57,6 +57,10 @@ struct Examiner {
                         finite(m.coat->shininess) && finite(m.coat->reflection) &&
                         finite(m.coat->grazing),
                     who + " has a coat with a number out of range");
+        if (m.sheen)
+            require(m.sheen->roughness >= 0 && m.sheen->roughness <= 1 &&
+                        finite_vector(m.sheen->color),
+                    who + " has a sheen with a number out of range");
         require(m.ior > 0 && finite(m.ior),
                 who + " has an index of refraction that is not positive");
         maps(m, who);

@@ -105,16 +105,20 @@ class Hasher {
         const auto& [specular, shininess, reflection, grazing, roughness, mirrors] = coat;
         add_all(specular, shininess, reflection, grazing, roughness, mirrors);
     }
+    void add(const Sheen& sheen) {
+        const auto& [color, roughness] = sheen;
+        add_all(color, roughness);
+    }
     void add(const Material& material) {
         const auto& [name, color, pattern, ambient, diffuse, specular, shininess, metallic,
                      specular_color, reflection, roughness, mirrors, conserve_energy, emission,
                      diffuse_transmission, opacity, transmission, ior, fresnel, smooth, absorption,
-                     coat, sides, emission_map, diffuse_transmission_map, alpha_map, specular_lobes,
-                     normal_map, blend] = material;
+                     coat, sheen, sides, emission_map, diffuse_transmission_map, alpha_map,
+                     specular_lobes, normal_map, blend] = material;
         add_all(name, color, pattern, ambient, diffuse, specular, shininess, metallic,
                 specular_color, reflection, roughness, mirrors, conserve_energy, emission,
                 diffuse_transmission, opacity, transmission, ior, fresnel, smooth, absorption, coat,
-                sides, emission_map, diffuse_transmission_map, alpha_map, specular_lobes,
+                sheen, sides, emission_map, diffuse_transmission_map, alpha_map, specular_lobes,
                 normal_map, blend);
     }
     void add(const Tangent& tangent) {

@@ -73,6 +73,16 @@ Vec3 kept_by(const PreparedLobe& lobe, const PreparedScene& prepared, bool mirro
     return product;
 }
 
+// The share that the sheen covers, seen at the angle of `cosine`.
+double cover_at(const PreparedSheen& sheen, double cosine) {
+    const double last = double(sheen.cover.size() - 1);
+    const double raised = 2 * std::acos(-std::clamp(cosine, 0.0, 1.0)) / std::numbers::pi - 1;
+    const double at = std::clamp(raised, 0.0, 1.0) * last;
+    const double first = std::min(std::floor(at), last - 1), share = at - first;
+    const auto i = std::size_t(first);
+    return sheen.cover[i] * (1 - share) + sheen.cover[i + 1] * share;
+}
+
 }  // namespace
 
 void find_kept(const PreparedScene& prepared, bool mirrored, SurfacePoints& surfaces,
@@ -83,10 +93,14 @@ void find_kept(const PreparedScene& prepared, bool mirrored, SurfacePoints& surf
     if (const auto& coat = material.coat; coat && coat->takes_reflected)
         by_coat = kept_by(coat->lobe, prepared, mirrored, surfaces, slot,
                           [&](double cosine) { return Vec3(coat_reflectance(*coat, cosine)); });
+    const double cover =
+        material.sheen ? cover_at(*material.sheen, -surfaces.view[slot].dot(surfaces.normal[slot]))
+                       : 0;
+    const Vec3 above = by_coat * (1 - cover);
     const auto kept_of = [&](std::size_t i) {
         const PreparedLobe& lobe = material.lobes[i];
-        if (!material.conserves) return by_coat;
-        return by_coat * kept_by(lobe, prepared, mirrored, surfaces, slot, [&](double cosine) {
+        if (!material.conserves) return above;
+        return above * kept_by(lobe, prepared, mirrored, surfaces, slot, [&](double cosine) {
                    return lobe.reflection * tint_of_mirror(surfaces, slot, cosine);
                });
     };
@@ -100,6 +114,11 @@ void find_kept(const PreparedScene& prepared, bool mirrored, SurfacePoints& surf
     surfaces.pigment.set(slot, surfaces.pigment[slot] * kept);
     surfaces.emitted.set(slot, surfaces.emitted[slot] * kept);
     if (material.backlit) surfaces.from_behind.set(slot, surfaces.from_behind[slot] * kept);
+    if (!material.sheen) return;
+    // Both layers are matte: what they scatter is found at once.
+    surfaces.pigment.set(slot, surfaces.pigment[slot] * surfaces.diffuse[slot] +
+                                   material.sheen->tint * by_coat * (cover * surfaces.alpha[slot]));
+    surfaces.diffuse[slot] = 1;
 }
 
 }  // namespace penumbra

@@ -104,6 +104,21 @@ Feature textured() {
     return feature;
 }
 
+// Cloth under a rough coat, whose displaced normals are not those that sheen goes by.
+Feature cloth() {
+    Gltf gltf = body(egg());
+    json& material = gltf.root["materials"][0];
+    material["pbrMetallicRoughness"]["baseColorTexture"] = texture(gltf, "picture.png");
+    material["pbrMetallicRoughness"]["roughnessFactor"] = 0.8;
+    material["extensions"]["KHR_materials_sheen"] = {{"sheenColorFactor", {0.9, 0.6, 0.3}},
+                                                     {"sheenRoughnessFactor", 0.3}};
+    gltf.root["extensionsUsed"] = {"KHR_materials_sheen"};
+    Feature feature = modelled("sheen, glTF cloth", std::move(gltf), "");
+    feature.files["picture.png"] = png();
+    feature.loss = "sheen is approximate";
+    return feature;
+}
+
 // A glTF body whose surface is as rough as its volume is thick.
 Feature frosted_body() {
     Gltf gltf = body(egg());
@@ -160,7 +175,16 @@ std::vector<Feature> mirror_features() {
                  "roughness = 0.4\nopacity = 0.5\ndiffuse = 0.6\nspecular = 0.4\nmirrors = 19\n"),
             modelled("frosted glass, flat facets", body(rock()), glass),
             modelled("frosted glass, single-sided", body(egg(), false), glass),
-            frosted_body()};
+            frosted_body(),
+            worn("sheen",
+                 "color = [0.1, 0.2, 0.5]\nsheen = { color = [1, 0.8, 0.6], roughness = 0.5 }\n"),
+            worn("sheen under a rough coat",
+                 "color = [0.5, 0.2, 0.1]\nsheen = { color = 0.7, roughness = 0.2 }\n"
+                 "coat = { roughness = 0.3, specular = 0.4 }\n"),
+            worn("sheen over a rough metal",
+                 gold + "roughness = 0.4\nconserve_energy = true\n"
+                        "sheen = { color = [0.2, 0.5, 0.9], roughness = 0.3 }\n"),
+            cloth()};
 }
 
 }  // namespace test

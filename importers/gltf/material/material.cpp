@@ -45,7 +45,6 @@ struct Unsupported {
 };
 
 constexpr std::array unsupported = {
-    Unsupported{"KHR_materials_sheen", "sheenColorFactor", "sheen"},
     Unsupported{"KHR_materials_anisotropy", "anisotropyStrength", "anisotropy"},
     Unsupported{"KHR_materials_iridescence", "iridescenceFactor", "iridescence"},
     Unsupported{"KHR_materials_dispersion", "dispersion", "dispersion"},
@@ -274,6 +273,7 @@ void MaterialReader::read() {
     read_volume();
     read_diffuse_transmission();
     read_clearcoat();
+    read_sheen();
     read_emission();
     read_normal();
     name_clear();

@@ -85,6 +85,7 @@ struct MaterialReader {
     /// What becomes of it; after the roughness.
     void read_volume();
     void name_clear();
+    void read_sheen();
     bool has_thickness(const tinygltf::Value& volume);
     void read_diffuse_transmission();
     void read_transmitted_color(const tinygltf::Value& given);

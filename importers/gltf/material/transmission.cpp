@@ -139,6 +139,22 @@ void MaterialReader::read_transmitted_color(const tinygltf::Value& given) {
             : texture_mean(reader, map.texture, true).value_or(Color(1));
 }
 
+void MaterialReader::read_sheen() {
+    const auto* given = extension("KHR_materials_sheen");
+    if (given == nullptr) return;
+    Color color = color_of(numbers(*given, "sheenColorFactor", {0, 0, 0}));
+    if (color == Color(0)) return;
+    if (material.opacity < 1) return note_loss(Loss::dropped, "sheen is ignored");
+    color *= mean_of(*given, "sheenColorTexture", true);
+    if (texture_info(*given, "sheenRoughnessTexture").texture >= 0)
+        note_loss(Loss::approximated, "sheenRoughnessTexture is ignored");
+    material.sheen = {
+        .color = Color(std::clamp(color.x, 0.0F, 1.0F), std::clamp(color.y, 0.0F, 1.0F),
+                       std::clamp(color.z, 0.0F, 1.0F)),
+        .roughness = std::clamp(float(number(*given, "sheenRoughnessFactor", 0)), 0.0F, 1.0F)};
+    note_loss(Loss::approximated, "sheen is approximate: its fibres scatter as a matte surface");
+}
+
 void MaterialReader::read_clearcoat() {
     const auto* given = extension("KHR_materials_clearcoat");
     if (given == nullptr) return;

@@ -99,7 +99,8 @@ void light_by_environment(Scene& scene) {
     std::vector<Light> lights;
     if (environment.sources > 0 && environment.intensity > 0) {
         const SkySources cut =
-            sky_sources(sky_cells(scene.textures[environment.texture]), environment.sources);
+            sky_sources(sky_cells(scene.textures[environment.texture], environment.sources),
+                        environment.sources);
         lights = lights_of(environment, rotation, cut.sources);
         widen_lobes(scene, cut.spread);
     }

@@ -12,7 +12,6 @@ namespace penumbra {
 
 namespace {
 
-constexpr int most_columns = 512, most_rows = 256;
 constexpr float brightest = 65504;  // of a half: what renderers see of a sky
 
 // How one axis of the image is divided: of a large image several pixels make a cell, of a small one
@@ -45,9 +44,10 @@ std::vector<Vec2> longitudes(int count) {
 
 }  // namespace
 
-SkyCells sky_cells(const Texture& texture) {
+SkyCells sky_cells(const Texture& texture, int sources) {
     const Raster& raster = texture.raster;
-    const Division across(raster.width, most_columns), down(raster.height, most_rows);
+    const int most_rows = sources <= 256 ? 128 : 256;
+    const Division across(raster.width, 2 * most_rows), down(raster.height, most_rows);
     SkyCells cells{.width = across.cells, .height = down.cells};
     const auto count = std::size_t(cells.width) * std::size_t(cells.height);
     cells.moments.resize(count);

@@ -35,8 +35,9 @@ struct SkyCells {
     }
 };
 
-/// At most 512 x 256 cells of an equirectangular image, laid out as Sky says. What is negative or
-/// not a number counts as 0.
-SkyCells sky_cells(const Texture& texture);
+/// At most 512 x 256 cells of an equirectangular image, laid out as Sky says, and a quarter of them
+/// for up to 256 sources: more than a hundred make one. What is negative or not a number counts as
+/// 0.
+SkyCells sky_cells(const Texture& texture, int sources = 4096);
 
 }  // namespace penumbra

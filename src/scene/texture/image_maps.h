@@ -17,7 +17,7 @@ template <class AnyMaterial, class Visit>
 void each_image_map(AnyMaterial& material, Visit visit) {
     auto& [name, color, pattern, ambient, diffuse, specular, shininess, metallic, specular_color,
            reflection, roughness, mirrors, conserve_energy, emission, diffuse_transmission, opacity,
-           transmission, ior, fresnel, smooth, absorption, coat, sides, emission_map,
+           transmission, ior, fresnel, smooth, absorption, coat, sheen, sides, emission_map,
            diffuse_transmission_map, alpha_map, specular_lobes, normal_map, blend] = material;
     static_assert(std::variant_size_v<Pattern> == 4, "has the new kind of pattern an image?");
     if (auto* map = std::get_if<ImageMap>(&pattern)) visit(*map, MapUse::pattern);

@@ -72,7 +72,8 @@ PreparedMaterial prepare(const Material& m, const Color& ambient_light) {
         f.coat = prepare(*m.coat, m.opacity >= 1);
         f.shines |= m.coat->specular > 0;
     }
-    f.takes_reflected = f.conserves || (f.coat && f.coat->takes_reflected);
+    if (covers(m)) f.sheen = {.cover = sheen_cover(*m.sheen), .tint = Vec3(sheen_tint(*m.sheen))};
+    f.takes_reflected = f.conserves || f.sheen || (f.coat && f.coat->takes_reflected);
     f.backlit = m.diffuse_transmission != Color(0);
     if (m.blend)
         f.other = std::make_shared<PreparedMaterial>(prepare(m.blend->other[0], ambient_light));

@@ -31,6 +31,12 @@ struct PreparedCoat {
     bool takes_reflected = false;
 };
 
+/// A Sheen likewise.
+struct PreparedSheen {
+    std::array<float, 17> cover = {};
+    Vec3 tint = Vec3(0);
+};
+
 /// A Material with its float32 numbers widened and combined with the scene's.
 struct PreparedMaterial {
     const Material* source = nullptr;
@@ -47,8 +53,9 @@ struct PreparedMaterial {
     bool blurs = false;                    ///< any lobe has several mirrors
     bool frosts = false;                   ///< see frosts()
     bool conserves = false;                ///< see takes_reflected()
-    bool takes_reflected = false;          ///< it or its coat
+    bool takes_reflected = false;          ///< it, its coat or its sheen
     std::optional<PreparedCoat> coat = {};
+    std::optional<PreparedSheen> sheen = {};
     bool backlit = false;                                ///< shows light from behind
     std::shared_ptr<const PreparedMaterial> other = {};  ///< of its Blend
 };
