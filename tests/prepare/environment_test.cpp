@@ -240,7 +240,7 @@ TEST_CASE("An environment widens highlights by what its sources stand for") {
     m.specular_lobes = SpecularLobes{.lobes = {{.specular = 0.25F, .shininess = 1000}}};
     m.blend = Blend{.map = {.texture = 0}, .other = {{.specular = 1, .shininess = 10}}};
     scene.environment->sources = 16;
-    const double spread = sky_sources(sky_cells(scene.textures[0]), 16).spread;
+    const double spread = sky_sources(sky_cells(scene.textures[0], 16), 16).spread;
     const Material made = normalise(scene, {}).scene.materials[0];
     const auto check = [&](float specular, float shininess, double k, double n) {
         const double wider = 1 / (1 / n + spread);

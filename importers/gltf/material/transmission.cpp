@@ -1,4 +1,4 @@
-// What lies over or under the roughness: transmission, volume, clear coat.
+// What lies over or under the roughness: transmission, volume, clear coat, sheen.
 #include "importers/gltf/material/material_reader.h"
 #include "scene/surface/metallic_roughness.h"
 
@@ -33,7 +33,8 @@ void MaterialReader::read_transmission() {
 }
 
 void MaterialReader::name_clear() {
-    if (transmitted > 0 && mean_roughness() > visibly_rough && !frosts(material))
+    if (transmitted > 0 && mean_roughness() > visibly_rough &&
+        (look == Look::clear || !frosts(material)))
         note_loss(Loss::approximated,
                   "transmission is approximate: a rough surface is shown as clear");
 }
@@ -147,7 +148,7 @@ void MaterialReader::read_sheen() {
     if (material.opacity < 1) return note_loss(Loss::dropped, "sheen is ignored");
     color *= mean_of(*given, "sheenColorTexture", true);
     if (texture_info(*given, "sheenRoughnessTexture").texture >= 0)
-        note_loss(Loss::approximated, "sheenRoughnessTexture is ignored");
+        note_loss(Loss::approximated, "sheenRoughnessTexture is left out: its factor stands alone");
     material.sheen = {
         .color = Color(std::clamp(color.x, 0.0F, 1.0F), std::clamp(color.y, 0.0F, 1.0F),
                        std::clamp(color.z, 0.0F, 1.0F)),

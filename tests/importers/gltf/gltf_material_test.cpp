@@ -111,9 +111,10 @@ TEST_CASE("glTF materials, name every feature that is left aside") {
         gltf.root["extensionsUsed"].push_back(name);
     const std::string place = "box.gltf#/materials/0";
     CHECK(read(gltf).losses ==
-          Losses{{Loss::dropped, place,
+          Losses{{Loss::approximated, place,
+                  "sheen is approximate: its fibres scatter as a matte surface"},
+                 {Loss::dropped, place,
                   "occlusionTexture is ignored: it would only dim indirect light"},
-                 {Loss::dropped, place, "sheen is ignored"},
                  {Loss::dropped, place, "anisotropy is ignored"},
                  {Loss::dropped, place, "iridescence is ignored"},
                  {Loss::dropped, place, "dispersion is ignored"}});
@@ -121,17 +122,33 @@ TEST_CASE("glTF materials, name every feature that is left aside") {
               .name == "material0");
 }
 
+TEST_CASE("glTF materials, wear sheen over what is opaque") {
+    const json cloth = {{"KHR_materials_sheen",
+                         {{"sheenColorFactor", {0.9, 0.5, 0}}, {"sheenRoughnessFactor", 0.4}}}};
+    const Material m = material_of({{"extensions", cloth}});
+    REQUIRE(m.sheen);
+    CHECK(m.sheen->color == Color(0.9F, 0.5F, 0));
+    CHECK(m.sheen->roughness == 0.4F);
+    const json half = {{"alphaMode", "BLEND"},
+                       {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.5}}}},
+                       {"extensions", cloth}};
+    const Imported seen_through = read(with_material(half));
+    CHECK_FALSE(seen_through.scene.materials[0].sheen);
+    CHECK(seen_through.losses ==
+          Losses{{Loss::dropped, "box.gltf#/materials/0", "sheen is ignored"}});
+}
+
 TEST_CASE("glTF materials, say once what several of them lose") {
-    const json sheen = {
-        {"extensions", {{"KHR_materials_sheen", {{"sheenColorFactor", {1, 0, 0}}}}}}};
-    Gltf gltf = with_material(sheen);
+    const json turned = {
+        {"extensions", {{"KHR_materials_anisotropy", {{"anisotropyStrength", 0.5}}}}}};
+    Gltf gltf = with_material(turned);
     for (int i = 0; i < 2; ++i) {
         json primitive = gltf.root["meshes"][0]["primitives"][0];
-        primitive["material"] = gltf.add("materials", sheen);
+        primitive["material"] = gltf.add("materials", turned);
         gltf.root["meshes"][0]["primitives"].push_back(primitive);
     }
     CHECK(read(gltf).losses ==
-          Losses{{Loss::dropped, "box.gltf#/materials/0", "sheen is ignored (3 times)", 3}});
+          Losses{{Loss::dropped, "box.gltf#/materials/0", "anisotropy is ignored (3 times)", 3}});
     // Nothing is lost where the extension has no effect.
     CHECK(read(with_material({{"extensions", {{"KHR_materials_sheen", json::object()}}}}))
               .losses.empty());
