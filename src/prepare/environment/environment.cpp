@@ -92,7 +92,11 @@ Environment& set_uniform_environment(Scene& scene, const Color& radiance) {
 void light_by_environment(Scene& scene) {
     if (!scene.environment) return;
     assert(environment_defects(scene).empty());
-    const Environment environment = *scene.environment;
+    Environment environment = *scene.environment;
+    if (environment.stage == Environment::Stage::floor && give_floor(scene)) {
+        scene.textures.push_back(over_floor(scene.textures[environment.texture]));
+        environment.texture = Index(scene.textures.size() - 1);
+    }
     scene.environment.reset();
     Matrix rotation = environment.rotation;
     if (environment.before_camera) rotation = heading(scene.cameras[scene.camera]) * rotation;
@@ -108,7 +112,6 @@ void light_by_environment(Scene& scene) {
     const Sky sky = {
         .texture = environment.texture, .gain = environment.intensity, .rotation = rotation};
     const bool staged = environment.stage != Environment::Stage::none;
-    if (environment.stage == Environment::Stage::floor) give_floor(scene);
     if (!environment.visible) {
         scene.mirror_sky = sky;
         if (staged && !scene.sky) scene.background = floor_radiance(lights);
