@@ -1,5 +1,6 @@
 // An environment becomes lights and a sky: what they add up to, and where they come from.
 #include "prepare/environment/cut.h"
+#include "scene/texture/texture_lookup.h"
 #include "support/small_scenes.h"
 #include "support/support.h"
 
@@ -253,6 +254,27 @@ TEST_CASE("An environment widens highlights by what its sources stand for") {
     check(made.blend->other[0].specular, made.blend->other[0].shininess, 1, 10);
     scene.environment->sources = 0;
     CHECK(normalise(scene, {}).scene.materials[0].shininess == 200);
+}
+
+TEST_CASE("A studio's floor sends back what falls on it, to mirrors as well") {
+    Scene scene = test::empty_scene();
+    scene.spheres.push_back({.radius = 1, .material = 0});
+    Environment& environment = set_uniform_environment(scene, Color(1));
+    environment.stage = Environment::Stage::floor;
+    environment.visible = false;
+    scene.cameras[0].position = {0, 3, 10};
+    const Scene made = normalise(scene, {}).scene;
+    REQUIRE(made.planes.size() == 1);
+    REQUIRE(made.mirror_sky);
+    const TextureLookup around(made.textures[made.mirror_sky->texture]);
+    const float albedo = made.materials[made.planes[0].material].color.x;
+    CHECK(sample(around, 0.3, 0.9).x == Approx(1));
+    CHECK(sample(around, 0.3, 0.1).x == Approx(albedo).epsilon(0.01));
+    CHECK(made.background.x == Approx(albedo).epsilon(0.02));
+    double up = 0, down = 0;
+    for (const Light& l : made.lights)
+        (l.direction.y < 0 ? down : up) += l.intensity * std::abs(double(l.direction.y));
+    CHECK(up / down == Approx(double(albedo)).epsilon(0.05));
 }
 
 TEST_CASE("A studio turns with the camera, level with it") {

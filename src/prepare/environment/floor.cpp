@@ -2,8 +2,8 @@
 #include "prepare/environment/floor.h"
 
 #include "base/memory.h"
-#include "image/texels.h"
 #include "prepare/environment/sky_cells.h"
+#include "scene/texture/texture_lookup.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,8 @@ namespace penumbra {
 namespace {
 
 constexpr float albedo = 0.6F;
-constexpr double gap = 1e-3;  // between floor and things, in radii: nothing lies in it
+constexpr int least_rows = 64;  // of an image that is to show it
+constexpr double gap = 1e-3;    // between floor and things, in radii: nothing lies in it
 
 // What falls from above on a level surface. The sources are as many as a studio has.
 Vec3 irradiance(const Texture& around) {
@@ -51,26 +52,28 @@ Color floor_radiance(const std::vector<Light>& lights) {
 }
 
 Texture over_floor(const Texture& around) {
-    const Raster& in = around.raster;
-    const MemoryClaim claim(in.texels() * 3 * sizeof(float), "environment " + around.name);
-    Texture out = around;
-    out.name += " over its floor";
-    out.srgb = false;
-    out.raster.depth = Depth::f32;
-    out.raster.channels = 3;
-    out.raster.data.resize(in.texels() * 3 * sizeof(float));
+    const int width = std::max(around.raster.width, 2 * least_rows);
+    const int height = std::max(around.raster.height, least_rows);
+    Texture out = {.name = around.name + " over its floor", .srgb = false};
+    out.raster = {.width = width, .height = height, .channels = 3, .depth = Depth::f32};
+    const std::size_t size = out.raster.texels() * 3 * sizeof(float);
+    const MemoryClaim claim(size, "environment " + around.name);
+    out.raster.data.resize(size);
     const Vec3 floor = irradiance(around) * (double(albedo) / std::numbers::pi);
     // Far away, towards the horizon, the room is darker than its middle.
     constexpr double all_floor = 0.15;
-    const LinearSamples samples(in, around.srgb);
-    for (int y = 0; y < in.height; ++y) {
-        const double height = std::sin((0.5 - (y + 0.5) / in.height) * std::numbers::pi);
-        const double part = std::clamp(-height / all_floor, 0.0, 1.0);
+    const TextureLookup lookup(around);
+    std::byte* to = out.raster.data.data();
+    for (int y = 0; y < height; ++y) {
+        const double v = 1 - (y + 0.5) / height;
+        const double part =
+            std::clamp(std::sin((0.5 - v) * std::numbers::pi) / all_floor, 0.0, 1.0);
         const double share = part * part * (3 - 2 * part);
-        for (int x = 0; x < in.width; ++x) {
-            const std::size_t t = std::size_t(y) * std::size_t(in.width) + std::size_t(x);
-            const Color color(Vec3(samples.color(t)) * (1 - share) + floor * share);
-            std::memcpy(out.raster.data.data() + sizeof color * t, &color.x, sizeof color);
+        for (int x = 0; x < width; ++x) {
+            const Vec3 there(sample(lookup, (x + 0.5) / width, v));
+            const Color color(there * (1 - share) + floor * share);
+            std::memcpy(to, &color.x, 3 * sizeof(float));
+            to += 3 * sizeof(float);
         }
     }
     return out;
