@@ -83,7 +83,7 @@ def code(text):
     The identity is a hash over the whole file, names in comments included.
     """
     text = re.sub(r"//[^\n]*|/\*.*?\*/", "", text, flags=re.S)
-    text = re.sub(r"(Model_\w+ != )\d+", r"\1identity", text)
+    text = re.sub(r"(Content_\w+ !?= )\d+", r"\1identity", text)
     text = re.sub(r"\b(Material|Mesh|Model)_[A-Za-z0-9_]+", r"\1_name", text)
     text = re.sub(r'"(\w+_textures/)\w+(\.png|\.exr)"', r'"\1name\2"', text)
     return re.sub(r"\s+", " ", text)
