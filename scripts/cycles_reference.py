@@ -10,6 +10,7 @@ the scene lies one colour, also through glass, and the environment is what mirro
 """
 import json
 import math
+import struct
 import sys
 import time
 
@@ -126,36 +127,54 @@ def mixed(tree, share, first, second):
     return mix.outputs[0]
 
 
-def matte_base(tree, principled):
+def dimmed(tree, taken, shader):
+    """A shader less the share `taken`."""
+    nothing = node(tree, "ShaderNodeBsdfTransparent")
+    nothing.inputs[0].default_value = (0, 0, 0, 1)
+    return mixed(tree, taken, shader, nothing.outputs[0])
+
+
+def unlink(tree, socket, value):
+    for link in socket.links:
+        tree.links.remove(link)
+    socket.default_value = value
+
+
+def under_the_mirror(tree, principled):
+    """What a dielectric does with light that its surface lets in: Lambert's term or thin glass."""
+    glass = principled.inputs["Transmission"]
+    matte = node(tree, "ShaderNodeBsdfDiffuse")
+    carry(tree, principled.inputs["Base Color"], matte.inputs["Color"])
+    carry(tree, principled.inputs["Normal"], matte.inputs["Normal"])
+    if not glass.is_linked and glass.default_value == 0:
+        return matte.outputs[0]
+    through = node(tree, "ShaderNodeBsdfRefraction", distribution="GGX")
+    through.inputs["IOR"].default_value = 1
+    for name, target in ("Base Color", "Color"), ("Normal", "Normal"), ("Roughness", "Roughness"):
+        carry(tree, principled.inputs[name], through.inputs[target])
+    return mixed(tree, glass, matte.outputs[0], through.outputs[0])
+
+
+def base_layer(tree, principled):
     """glTF's base: mix(dielectric, metal, metallic), with Lambert's diffuse term.
 
     Blender's own has Burley's, which is up to 1.4 times as bright where light and view graze.
     """
     metallic = principled.inputs["Metallic"]
     shiny = twin(tree, principled)
-    for name, value in ("Base Color", (0, 0, 0, 1)), ("Metallic", 0):
-        for link in shiny.inputs[name].links:
-            tree.links.remove(link)
-        shiny.inputs[name].default_value = value
-    matte = node(tree, "ShaderNodeBsdfDiffuse")
-    carry(tree, principled.inputs["Base Color"], matte.inputs["Color"])
-    carry(tree, principled.inputs["Normal"], matte.inputs["Normal"])
-    nothing = node(tree, "ShaderNodeBsdfTransparent")
-    nothing.inputs[0].default_value = (0, 0, 0, 1)
-    specular = principled.inputs["Specular"]
+    for name, value in ("Base Color", (0, 0, 0, 1)), ("Metallic", 0), ("Transmission", 0):
+        unlink(tree, shiny.inputs[name], value)
     taken = node(tree, "ShaderNodeMath", operation="MULTIPLY")  # what the mirror takes: its F0
-    carry(tree, specular, taken.inputs[0])
+    carry(tree, principled.inputs["Specular"], taken.inputs[0])
     taken.inputs[1].default_value = 0.08
     both = node(tree, "ShaderNodeAddShader")
-    tree.links.new(mixed(tree, taken.outputs[0], matte.outputs[0], nothing.outputs[0]),
+    tree.links.new(dimmed(tree, taken.outputs[0], under_the_mirror(tree, principled)),
                    both.inputs[0])
     tree.links.new(shiny.outputs[0], both.inputs[1])
     if not metallic.is_linked and metallic.default_value == 0:
         return both.outputs[0]
     metal = twin(tree, principled)
-    for link in metal.inputs["Metallic"].links:
-        tree.links.remove(link)
-    metal.inputs["Metallic"].default_value = 1
+    unlink(tree, metal.inputs["Metallic"], 1)
     return mixed(tree, metallic, both.outputs[0], metal.outputs[0])
 
 
@@ -177,21 +196,37 @@ def coated(tree, principled, base):
     return mixed(tree, share.outputs[0], base, coat.outputs[0])
 
 
-def as_gltf_means(material):
+def fewer_hairs(tree):
+    """KHR_materials_sheen of roughness 0.8 in the mean over all directions.
+
+    There the importer's velvet reflects 0.363 of a white sheen and glTF's Charlie term 0.223, which
+    the base loses; the importer takes nothing from it.
+    """
+    for both in [n for n in tree.nodes if n.type == "ADD_SHADER"]:
+        sources = [i.links[0].from_node for i in both.inputs if i.is_linked]
+        for velvet in [n for n in sources if n.type == "BSDF_VELVET"]:
+            sheen = velvet.inputs["Color"]
+            if sheen.is_linked:
+                continue
+            strongest = max(sheen.default_value[:3])
+            sheen.default_value = [0.223 / 0.363 * c for c in sheen.default_value[:3]] + [1]
+            share = node(tree, "ShaderNodeValue").outputs[0]
+            share.default_value = 0.223 * strongest
+            base = [i for i in both.inputs if i.links[0].from_node != velvet][0]
+            tree.links.new(dimmed(tree, share, base.links[0].from_socket), base)
+
+
+def as_gltf_means(material, solid):
     """Rewires what the importer made of a material where Blender 3.4 means something else."""
     tree = material.node_tree
     for principled in [n for n in tree.nodes if n.type == "BSDF_PRINCIPLED"]:
         principled.distribution = "MULTI_GGX"  # rough metals lose no light
-        glass = principled.inputs["Transmission"]
         users = [link.to_socket for link in principled.outputs[0].links]
         plain = twin(tree, principled)
-        for name, value in ("Alpha", 1), ("Clearcoat", 0):
-            for link in plain.inputs[name].links:
-                tree.links.remove(link)
-            plain.inputs[name].default_value = value
-        shader = plain.outputs[0]
-        if not glass.is_linked and glass.default_value == 0:
-            shader = matte_base(tree, plain)
+        unlink(tree, plain.inputs["Alpha"], 1)
+        unlink(tree, plain.inputs["Clearcoat"], 0)
+        # Glass without a volume is a thin sheet; Blender would refract as a solid.
+        shader = plain.outputs[0] if solid else base_layer(tree, plain)
         shader = coated(tree, principled, shader)
         alpha = principled.inputs["Alpha"]
         if alpha.is_linked or alpha.default_value != 1:
@@ -199,6 +234,28 @@ def as_gltf_means(material):
             shader = mixed(tree, alpha, clear.outputs[0], shader)
         for user in users:
             tree.links.new(shader, user)
+    fewer_hairs(tree)
+
+
+def solid_glass(path):
+    """Names of the materials that glass fills."""
+    with open(path, "rb") as file:
+        data = file.read()
+    if data[:4] == b"glTF":
+        data = data[20:20 + struct.unpack_from("<I", data, 12)[0]]
+    return {m.get("name") for m in json.loads(data).get("materials", [])
+            if {"KHR_materials_transmission", "KHR_materials_volume"} <= m.get("extensions", {}).keys()}
+
+
+def read_without_animations():
+    """The pose of the nodes, not the first instant of an animation, which the importer would set."""
+    from io_scene_gltf2.io.imp.gltf2_io_gltf import glTFImporter
+    read = glTFImporter.read
+
+    def reads(importer):
+        read(importer)
+        importer.data.animations = []
+    glTFImporter.read = reads
 
 
 def set_floor(job):
@@ -230,13 +287,11 @@ def load(job):
     for thing in list(bpy.context.scene.objects):
         if thing.type == "CAMERA":
             bpy.data.objects.remove(thing)
-            continue
-        # The pose of the nodes, not the first instant of an animation.
-        thing.animation_data_clear()
     if job["rewire"]:
+        solid = solid_glass(job["model"])
         for material in bpy.data.materials:
             if material.use_nodes:
-                as_gltf_means(material)
+                as_gltf_means(material, material.name in solid)
 
 
 def set_rendering(job):
@@ -267,6 +322,7 @@ def set_rendering(job):
 def main():
     with open(sys.argv[sys.argv.index("--") + 1], encoding="utf-8") as file:
         jobs = json.load(file)
+    read_without_animations()
     for job in jobs:
         start = time.monotonic()
         load(job)
