@@ -111,11 +111,13 @@ def job_of(asset, options, folder, environment):
                  for k in ("min", "max"))
     radius = sum((b - a) ** 2 for a, b in zip(low, high)) ** 0.5 / 2
     script = (ROOT / "scripts/cycles_reference.py").read_bytes()
-    return {"name": asset["name"], "script": hashlib.sha256(script).hexdigest(), "model": str(model.resolve()),
+    return {"name": asset["name"], "script": hashlib.sha256(script).hexdigest(),
+            "model": str(model.resolve()),
             "size": SIZE, "radius": radius,
             "environment": str(environment.resolve()), "albedo": FLOOR_ALBEDO,
             "samples": options.cycles_samples, "diffuse_bounces": options.cycles_bounces,
-            "floor_gives_light": options.cycles_floor_light, "rewire": not options.cycles_burley, "output": str((folder / "cycles.exr").resolve()),
+            "floor_gives_light": options.cycles_floor_light, "rewire": not options.cycles_burley,
+            "output": str((folder / "cycles.exr").resolve()),
             **seen(options.penumbra, model, folder)}
 
 
@@ -207,7 +209,8 @@ def gallery(options, assets):
     work = options.work.resolve()
     work.mkdir(parents=True, exist_ok=True)
     PICTURES.mkdir(parents=True, exist_ok=True)
-    environment, jobs, rows, all_figures, failed = studio_image(options.penumbra, work), [], [], [], 0
+    environment = studio_image(options.penumbra, work)
+    jobs, rows, all_figures, failed = [], [], [], 0
     for asset in chosen:
         folder = work / asset["name"]
         folder.mkdir(exist_ok=True)
