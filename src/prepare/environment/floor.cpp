@@ -63,6 +63,8 @@ Texture over_floor(const Texture& around) {
     // Far away, towards the horizon, the room is darker than its middle.
     constexpr double all_floor = 0.15;
     const TextureLookup lookup(around);
+    const bool same_size = width == around.raster.width && height == around.raster.height;
+    std::size_t texel = 0;
     std::byte* to = out.raster.data.data();
     for (int y = 0; y < height; ++y) {
         const double v = 1 - (y + 0.5) / height;
@@ -70,7 +72,8 @@ Texture over_floor(const Texture& around) {
             std::clamp(std::sin((0.5 - v) * std::numbers::pi) / all_floor, 0.0, 1.0);
         const double share = part * part * (3 - 2 * part);
         for (int x = 0; x < width; ++x) {
-            const Vec3 there(sample(lookup, (x + 0.5) / width, v));
+            const Vec3 there(same_size ? lookup.samples.color(texel++)
+                                       : sample(lookup, (x + 0.5) / width, v));
             const Color color(there * (1 - share) + floor * share);
             std::memcpy(to, &color.x, 3 * sizeof(float));
             to += 3 * sizeof(float);
