@@ -31,7 +31,7 @@ bool has_eight_bits(const cv::Mat& linear) {
 // What must be known of the whole pictures before any of their rows is measured.
 struct Survey {
     bool test_has_eight_bits = true, reference_has_eight_bits = true;
-    Background background = {};
+    Background background = {};               // unless what is covered is known
     std::optional<Exposures> exposures = {};  // where HDR-FLIP is wanted
 };
 
@@ -90,9 +90,10 @@ Survey survey(const Pair& pair, const CompareOptions& options, float gain, bool 
         if (!options.background && options.covered.empty())
             count_border(span, pair.height(), border_rows(span, rows, pair.height()), border);
     });
-    result.background = options.background
-                            ? Background{pixel(encoded(*options.background * gain)), 1}
-                            : border.most();
+    if (options.background)
+        result.background = {pixel(encoded(*options.background * gain)), 1};
+    else if (options.covered.empty())
+        result.background = border.most();
     const double enough = 0.001 * double(pair.counted().total());
     if (always_hdr || double(test_bright) > enough || double(reference_bright) > enough)
         result.exposures = exposures_of(pair);

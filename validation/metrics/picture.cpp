@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace penumbra::metrics {
@@ -57,6 +58,7 @@ void Majority::count(const cv::Vec3f& encoded, float alpha) {
 }
 
 Background Majority::most() const {
+    assert(!counts_.empty());
     const auto by_count = [](const auto& entry) { return entry.second; };
     const auto& most = std::ranges::max_element(counts_, {}, by_count)->first;
     const auto value = [&](std::size_t i) { return float(most[i]) / 255; };

@@ -73,6 +73,7 @@ struct Background {
 class Majority {
   public:
     void count(const cv::Vec3f& encoded, float alpha = 1);
+    /// Precondition: something was counted.
     Background most() const;
 
   private:

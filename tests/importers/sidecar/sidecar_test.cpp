@@ -72,9 +72,11 @@ TEST_CASE("[render] says where rays go through a pixel") {
 }
 
 TEST_CASE("backdrop marks spheres and planes that the picture is not of") {
-    const Scene scene = load("[[sphere]]\nbackdrop = true\n[[sphere]]\n[[plane]]\n"
-                             "[[plane]]\npoint = [0, 1, 0]\nbackdrop = true")
+    const Scene scene = load("[[sphere]]\nbackdrop = true\n[[sphere]]\ncenter = [2, 0, 0]\n"
+                             "[[plane]]\n[[plane]]\npoint = [0, 1, 0]\nbackdrop = true")
                             .scene;
+    REQUIRE(scene.spheres.size() == 2);
+    REQUIRE(scene.planes.size() == 2);
     CHECK(scene.spheres[0].backdrop);
     CHECK_FALSE(scene.spheres[1].backdrop);
     CHECK_FALSE(scene.planes[0].backdrop);
