@@ -9,12 +9,14 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <vector>
 
 namespace penumbra {
 
 namespace {
 
-constexpr int width = 1024, height = 512;
+// Of images of soft boxes and of a sky, and of those with a sun or lamps in them.
+constexpr int smooth = 512, detailed = 1024;
 
 double ramp(double from, double to, double value) {
     const double t = std::clamp((value - from) / (to - from), 0.0, 1.0);
@@ -97,7 +99,8 @@ Vec3 night(const Vec3& d) {
 }
 
 template <class Light>
-Texture draw(const char* name, const Light& light) {
+Texture draw(const char* name, int width, const Light& light) {
+    const int height = width / 2;
     Texture texture = {.name = name, .srgb = false};
     Raster& raster = texture.raster;
     raster = {.width = width, .height = height, .channels = 3, .depth = Depth::f32};
@@ -105,13 +108,18 @@ Texture draw(const char* name, const Light& light) {
     const MemoryClaim claim(size, std::string("environment ") + name);
     raster.data.resize(size);
     std::byte* to = raster.data.data();
-    for (int y = 0; y < height; ++y)
+    std::vector<Vec3> level;
+    for (int x = 0; x < width; ++x) level.push_back(toward(((x + 0.5) / width - 0.5) * 360, 0));
+    for (int y = 0; y < height; ++y) {
+        const double elevation = radians((0.5 - (y + 0.5) / height) * 180);
+        const double across = std::cos(elevation), up = std::sin(elevation);
         for (int x = 0; x < width; ++x) {
-            const double longitude = ((x + 0.5) / width - 0.5) * 360;
-            const Color color(light(toward(longitude, (0.5 - (y + 0.5) / height) * 180)));
+            const Vec3& d = level[std::size_t(x)];
+            const Color color(light({d.x * across, up, d.z * across}));
             std::memcpy(to, &color.x, 3 * sizeof(float));
             to += 3 * sizeof(float);
         }
+    }
     return texture;
 }
 
@@ -124,10 +132,10 @@ std::span<const char* const> surroundings_names() { return names; }
 Environment& set_surroundings(Scene& scene, Surroundings which) {
     const char* name = names[std::size_t(which)];
     switch (which) {
-    case Surroundings::studio: scene.textures.push_back(draw(name, studio)); break;
-    case Surroundings::overcast: scene.textures.push_back(draw(name, overcast)); break;
-    case Surroundings::sunset: scene.textures.push_back(draw(name, sunset)); break;
-    case Surroundings::night: scene.textures.push_back(draw(name, night)); break;
+    case Surroundings::studio: scene.textures.push_back(draw(name, smooth, studio)); break;
+    case Surroundings::overcast: scene.textures.push_back(draw(name, smooth, overcast)); break;
+    case Surroundings::sunset: scene.textures.push_back(draw(name, detailed, sunset)); break;
+    case Surroundings::night: scene.textures.push_back(draw(name, detailed, night)); break;
     }
     Environment& environment = set_environment(scene, Index(scene.textures.size() - 1), name);
     environment.before_camera = which == Surroundings::studio;
