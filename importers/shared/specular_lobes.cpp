@@ -184,6 +184,14 @@ bool has_lobe_maps(const LobeMaps& maps) {
                            !keeps_base(maps) && constant_of(maps.metallic)->x < 1);
 }
 
+bool dulls_base(const LobeMaps& maps) {
+    constexpr float dullest_unseen = 0.29F;  // roughness: below that the loss is under 1 %
+    if (maps.illumination != Illumination::environment || maps.base.raster == nullptr) return false;
+    const auto metallic = constant_of(maps.metallic), roughness = constant_of(maps.roughness);
+    if (!metallic || !roughness || metallic->x < no_metal) return false;
+    return metallic->x < 1 || roughness->x > dullest_unseen;
+}
+
 std::optional<DielectricReflectance> reflectance_of(const LobeMaps& maps) {
     const auto f0 = constant_of(maps.specular);
     if (!f0) return std::nullopt;

@@ -37,6 +37,10 @@ struct LobeImages {
 /// Whether the surface is more than one roughness.
 bool has_lobe_maps(const LobeMaps& maps);
 
+/// Whether a metal of one roughness makes of its image of the base colour what no factor can: under
+/// an environment the darker of two colours loses more.
+bool dulls_base(const LobeMaps& maps);
+
 /// The reflectance of what is not metal, if that is the same everywhere.
 std::optional<DielectricReflectance> reflectance_of(const LobeMaps& maps);
 

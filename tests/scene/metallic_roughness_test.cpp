@@ -6,6 +6,7 @@
 #include "penumbra/scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 using namespace penumbra;
@@ -134,4 +135,45 @@ TEST_CASE("Phong, tints the highlight of a metal and not that of a dielectric") 
 TEST_CASE("Phong, drops reflections that nobody sees") {
     CHECK(surface(Color(1), 0, 0.35F).reflection.x == Approx(0.04 * std::pow(1 - 0.35 / 0.6, 2)));
     CHECK(surface(Color(1), 0, 0.45F).reflection == Color(0));
+}
+
+TEST_CASE(
+    "Phong, of a metal in light from all around absorbs with each bounce between its facets") {
+    // Mean albedo of GGX (Smith, height-correlated) that reflects all, by integration.
+    const std::array<std::array<double, 2>, 5> albedos = {
+        {{0.33, 0.968}, {0.5, 0.882}, {0.67, 0.737}, {0.83, 0.575}, {1, 0.409}}};
+    const Color copper = {0.95F, 0.55F, 0.2F};
+    for (const auto& [roughness, e] : albedos) {
+        Material m;
+        m.color = copper;
+        set_metallic_roughness(m, 1, float(roughness), 0.04F, Illumination::environment);
+        CHECK(m.specular_color.value_or(m.color) == copper);  // what tints mirror and highlight
+        for (int channel = 0; channel < 3; ++channel) {
+            CAPTURE(roughness, channel);
+            const double c = double(copper[channel]);
+            const double lobe = 2 * double(m.specular) / (double(m.shininess) + 1);
+            const double mirror = double(m.reflection[channel]);
+            CHECK(c * (lobe + mirror) + double(m.diffuse * m.color[channel]) ==
+                  Approx(c * e / (1 - c * (1 - e))).epsilon(0.02));
+        }
+    }
+}
+
+TEST_CASE("Phong, of a rough dielectric in light from all around scatters its reflectance too") {
+    Material black;
+    black.color = Color(0);
+    set_metallic_roughness(black, 0, 1, 0.04F, Illumination::environment);
+    const double e = 0.409;
+    CHECK(double(black.diffuse * black.color.x) ==
+          Approx(0.04 * e / (1 - 0.04 * (1 - e))).epsilon(0.01));
+    Material white;
+    white.color = Color(1);
+    set_metallic_roughness(white, 0, 1, 0.04F, Illumination::environment);
+    CHECK(white.color == Color(1));
+    CHECK(double(white.diffuse) <= 1);
+    Material polished;
+    polished.color = {0.5F, 0.3F, 0.1F};
+    set_metallic_roughness(polished, 0, 0, 0.04F, Illumination::environment);
+    CHECK(polished.color == Color(0.5F, 0.3F, 0.1F));
+    CHECK(polished.diffuse == Approx(0.96));
 }

@@ -75,6 +75,8 @@ struct MaterialReader {
     /// Means over what the facets show.
     double mean_metallic();
     double mean_roughness();
+    /// Whether any primitive that wears it has COLOR_0.
+    bool has_vertex_colors() const;
     TexelSource metallic_roughness_source(int channel);
     /// What is reflected by what is not metal, without images.
     DielectricReflectance dielectric() const;

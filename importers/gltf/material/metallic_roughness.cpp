@@ -195,8 +195,15 @@ void Plan::make_constant() {
         read.note_loss(Loss::approximated, "what it reflects is not tinted by the base colour's "
                                            "image: the surface is transparent");
     }
-    set_metallic_roughness(read.material, constant_of(maps.metallic)->x,
-                           constant_of(maps.roughness)->x, dielectric, maps.illumination);
+    // What multiplies the colour of a metal, an image or colours of vertices, multiplies that of a
+    // white one.
+    const float metallic = constant_of(maps.metallic)->x;
+    const Color factor = read.material.color;
+    const bool white = metallic == 1 && (maps.base.raster != nullptr || read.has_vertex_colors());
+    if (white) read.material.color = Color(1);
+    set_metallic_roughness(read.material, metallic, constant_of(maps.roughness)->x, dielectric,
+                           maps.illumination);
+    if (white) read.material.color = factor;
     read.lay_base();
 }
 
@@ -312,6 +319,13 @@ double MaterialReader::mean_roughness() {
            double(penumbra::mean_of(metallic_roughness_source(1)).x);
 }
 
+bool MaterialReader::has_vertex_colors() const {
+    const auto colored = [](const tinygltf::Primitive* primitive) {
+        return primitive->attributes.contains("COLOR_0");
+    };
+    return reader.cache.wearers && std::ranges::any_of(reader.cache.wearers(index), colored);
+}
+
 void MaterialReader::read_metallic_roughness() {
     Plan plan = {.read = *this, .maps = {.illumination = reader.options.illumination}};
     if (extension(specular_glossiness) != nullptr)
@@ -328,10 +342,11 @@ void MaterialReader::read_metallic_roughness() {
         plan.maps.base.raster = raster_of(reader, base.texture);
         plan.maps.base.srgb = true;
     }
-    const bool baked = has_lobe_maps(plan.maps) && opaque();
+    const bool dulls = dulls_base(plan.maps);
+    const bool baked = opaque() && (dulls || has_lobe_maps(plan.maps));
     if (baked && trial != nullptr && plan.even_on_any()) trial->averaged = true;
     if (baked) plan.align();
-    if (baked && has_lobe_maps(plan.maps))
+    if (baked && (dulls || has_lobe_maps(plan.maps)))
         plan.bake();
     else
         plan.make_constant();

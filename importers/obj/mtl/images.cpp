@@ -178,7 +178,7 @@ void MaterialMaker::flatten(const std::optional<MapImage>& map, TexelSource& sou
 
 bool MaterialMaker::lobe_images(MetallicRoughness& surface) {
     const std::optional<MapImage> metal = image("map_pm"), rough = image("map_pr");
-    if (!metal && !rough) return false;
+    if (!metal && !rough && !base) return false;
     LobeMaps maps{.illumination = illumination};
     maps.base.factor = material.color;
     maps.metallic.factor = Color(surface.metallic);
@@ -208,7 +208,7 @@ bool MaterialMaker::lobe_images(MetallicRoughness& surface) {
         if (joined && *map && !laid_alike(**map, frame))
             flatten(*map, *source, "it is laid in another way than the first image");
     }
-    if (has_lobe_maps(maps)) {
+    if (has_lobe_maps(maps) || (opaque() && dulls_base(maps))) {
         bake(maps, frame, rough ? *rough : frame);
         return true;
     }
@@ -245,8 +245,10 @@ void MaterialMaker::bake(LobeMaps& maps, const MapImage& frame, const MapImage& 
                        illumination);
     if (plain) lay_base();
     note_loss(Loss::approximated, entry.line,
-              fmt::format("metallic and roughness images: mixed from {} Phong lobe{}",
-                          images.lobes.size(), images.lobes.size() == 1 ? "" : "s"));
+              maps.metallic.raster || maps.roughness.raster
+                  ? fmt::format("metallic and roughness images: mixed from {} Phong lobe{}",
+                                images.lobes.size(), images.lobes.size() == 1 ? "" : "s")
+                  : "image of a rough metal: mixed from 1 Phong lobe");
 }
 
 // map_Ka that only repeats map_Kd needs none of its own, as ambience takes its colour from the

@@ -161,8 +161,13 @@ void MaterialMaker::metallic_roughness() {
                                  .f0 = ior > 1 ? r * r : 0.04F};
     material.ambient = values.ambient.value_or(Color(1)) * ambience();
     if (lobe_images(surface)) return;
-    lay_base();
+    // An image of the colour multiplies that of a white metal.
+    const bool white = surface.metallic == 1 && base;
+    const Color factor = material.color;
+    if (white) material.color = Color(1);
     set_metallic_roughness(material, surface.metallic, surface.roughness, surface.f0, illumination);
+    if (white) material.color = factor;
+    lay_base();
 }
 
 void MaterialMaker::transparency() {

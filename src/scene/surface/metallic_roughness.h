@@ -14,7 +14,8 @@ struct RoughnessLobe {
     double exponent = 1;   ///< N
     double sharp = 0;      ///< the part of what is reflected that is seen as a mirror image
     double roughness = 0;  ///< of that image: see Material::roughness
-    double even = 0;       ///< the part that a metal scatters evenly, where light is all around
+    double even = 0;       ///< the part that is scattered evenly, where light is all around
+    double absorbing = 0;  ///< k: see reflected_at_last() in metallic_roughness.cpp
     Illumination illumination = Illumination::lamps;
 };
 /// `metal`: of what reflects strongly; else the faint blurred image of a rough dielectric is left
