@@ -170,3 +170,22 @@ TEST_CASE(
     CHECK(read(folder / "a.png.checkpoint") == before);
     CHECK_FALSE(fs::exists(folder / "a.png"));
 }
+
+TEST_CASE("render shows the grey behind a file's own lights as grey, whatever the exposure is") {
+    const TempDir folder;
+    // A facet of a mirror under a lamp of 5000 candela: metered far from exposure 0.
+    write(folder / "lamp.gltf", R"({"asset": {"version": "2.0"}, "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"translation": [0, 0, 3], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+        "extensionsUsed": ["KHR_lights_punctual"], "extensions": {"KHR_lights_punctual":
+            {"lights": [{"type": "point", "intensity": 5000}]}}})");
+    write(folder / "facet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    for (const char* const exposure : {"auto", "-3"}) {
+        const Ended ended = run(folder.path, {"render", "lamp.gltf", "facet.obj", "--exposure",
+                                              exposure, "--size", "32x24", "-o", "p.png"});
+        REQUIRE(ended.status == 0);
+        const penumbra::Image picture = penumbra::load_image(folder / "p.png");
+        CHECK(double(picture.at(0, 0).x) == Approx(0.18).margin(0.002));
+        fs::remove(folder / "p.png");
+    }
+}

@@ -274,6 +274,43 @@ TEST_CASE("The light of a glTF file asks for an exposure unless somebody gives o
           "setting 'render.exposure=bright': 'exposure' in [render] must be a number or \"auto\"");
 }
 
+TEST_CASE("A glTF file with lights of its own stands before a grey, as bright as it is shown") {
+    StudioFiles inputs;
+    inputs.file("stage.gltf", stage).file("facet.obj", facet_obj);
+    const std::vector<std::string> names = {"stage.gltf", "facet.obj"};
+    const auto load = [&](std::vector<std::string> settings = {}, Studio studio = Studio::floor) {
+        return inputs.load(names, {.settings = std::move(settings), .studio = studio});
+    };
+    const Imported metered = load();
+    CHECK(metered.plain_background);  // to be divided by what is metered
+    CHECK(metered.scene.background == Color(0.18F));
+    const Imported given = load({"render.exposure=2"});
+    CHECK_FALSE(given.plain_background);
+    CHECK(given.scene.background == Color(0.045F));
+    const Imported own = load({"render.background=[0.5,0,0]"});
+    CHECK_FALSE(own.plain_background);
+    CHECK(own.scene.background == Color(0.5F, 0, 0));
+    const Imported black = load({}, Studio::black);
+    CHECK_FALSE(black.plain_background);
+    CHECK(black.scene.background == Color(0));
+}
+
+TEST_CASE("Rough glass whose vertices have colours is shown clear, and said to be") {
+    Inputs inputs;
+    inputs
+        .file("sheet.obj", "mtllib glass.mtl\nusemtl glass\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\n"
+                           "v 0 1 0 0 0 1\nv 0 0 1 1 1 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
+        .file("glass.mtl", "newmtl glass\n")
+        .file("rough.toml", "[material.glass]\nopacity = 0.1\nior = 1.5\nroughness = 0.3\n");
+    const auto lost = [&](const std::vector<std::string>& names) {
+        return std::ranges::count(inputs.load(names).losses,
+                                  "its rough glass is shown as clear: its vertices have colours",
+                                  &Loss::what);
+    };
+    CHECK(lost({"sheet.obj", "rough.toml"}) == 1);
+    CHECK(lost({"sheet.obj"}) == 0);
+}
+
 TEST_CASE("Normal maps are baked, dropped or kept as the caller wants") {
     Scene scene;
     scene.meshes = {{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
