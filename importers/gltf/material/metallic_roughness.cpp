@@ -265,6 +265,7 @@ void Plan::bake() {
     if (read.material.specular_lobes && read.material.specular_lobes->level.texture != no_index)
         read.note_set(level, [](Material& m) -> ImageMap& { return m.specular_lobes->level; });
     if (scattered.texture == no_index) read.lay_base();
+    if (!has_lobe_maps(maps)) return;
     read.note_loss(Loss::approximated, fmt::format("{} texture: mixed from {} Phong lobe{}",
                                                    subject(), lobes, lobes == 1 ? "" : "s"));
 }

@@ -244,11 +244,10 @@ void MaterialMaker::bake(LobeMaps& maps, const MapImage& frame, const MapImage& 
     lay_specular_lobes(material, std::move(specular_lobes), scattered, {.f0 = maps.specular.factor},
                        illumination);
     if (plain) lay_base();
+    if (!has_lobe_maps(maps)) return;
     note_loss(Loss::approximated, entry.line,
-              maps.metallic.raster || maps.roughness.raster
-                  ? fmt::format("metallic and roughness images: mixed from {} Phong lobe{}",
-                                images.lobes.size(), images.lobes.size() == 1 ? "" : "s")
-                  : "image of a rough metal: mixed from 1 Phong lobe");
+              fmt::format("metallic and roughness images: mixed from {} Phong lobe{}",
+                          images.lobes.size(), images.lobes.size() == 1 ? "" : "s"));
 }
 
 // map_Ka that only repeats map_Kd needs none of its own, as ambience takes its colour from the
