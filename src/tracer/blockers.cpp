@@ -22,15 +22,17 @@ bool plane_between(const PreparedPlane& plane, const Extent& points, const Exten
 void PointGroups::clear() {
     all = {};
     boxes.clear();
+    normals.clear();
     along.clear();
 }
 
-void PointGroups::add(const PreparedScene& prepared, const Vec3Array& positions,
+void PointGroups::add(const PreparedScene& prepared, const SurfacePoints& surfaces,
                       const IndexRange& range) {
-    boxes.push_back(box_around(positions, range));
+    boxes.push_back(box_around(surfaces.position, range));
+    normals.push_back(box_around(surfaces.normal, range));
     all.extend(boxes.back().min);
     all.extend(boxes.back().max);
-    const Vec3View p(positions);
+    const Vec3View p(surfaces.position);
     scratch_.resize(range.last - range.first);
     for (const PreparedPlane& plane : prepared.planes) {
         const Vec3& n = plane.frame.normal;
@@ -40,11 +42,30 @@ void PointGroups::add(const PreparedScene& prepared, const Vec3Array& positions,
     }
 }
 
+// The largest n . l of normals and directions in their boxes is less than 0.
+bool PointGroups::face_away(std::size_t group, const SourceGroup& light) const {
+    const Bounds &n = normals[group], &points = boxes[group];
+    const auto below = [&](const Vec3& least, const Vec3& most) {
+        double highest = 0;
+        for (int c = 0; c < 3; ++c)
+            highest += std::max(
+                {n.min[c] * least[c], n.min[c] * most[c], n.max[c] * least[c], n.max[c] * most[c]});
+        return highest < 0;
+    };
+    const PreparedSource& first = light.sources.front();
+    if (first.type == Light::Type::directional && light.sources.size() == 1)
+        return below(-first.axis, -first.axis);
+    return first.type != Light::Type::directional &&
+           below(light.box.min - points.max, light.box.max - points.min);
+}
+
 void Blockers::find_group(const PreparedScene& prepared, const PointGroups& points,
                           const SourceGroup& light, bool facets) {
     const std::size_t index = groups.size();
     BlockedBy& group = groups.emplace_back();
-    group.first_shape = shapes.size();
+    group.first_shape = group.last_shape = shapes.size();
+    group.away = points.face_away(index, light);
+    if (group.away) return;
     const auto add = [&](Index object) {
         group.any = true;
         if (prepared.material_of(object).opaque)

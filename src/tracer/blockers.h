@@ -3,6 +3,7 @@
 
 #include "tracer/accel/shaft.h"
 #include "tracer/prepared/prepared_scene.h"
+#include "tracer/surface_points.h"
 
 #include <vector>
 
@@ -10,12 +11,16 @@ namespace penumbra {
 
 /// Groups of surface points.
 struct PointGroups {
-    Bounds all = {};                 ///< around all of them
-    std::vector<Bounds> boxes = {};  ///< around each group
-    std::vector<Extent> along = {};  ///< of n . p, for each group and each plane of the world
+    Bounds all = {};                   ///< around all of them
+    std::vector<Bounds> boxes = {};    ///< around each group
+    std::vector<Bounds> normals = {};  ///< around the shading normals of each
+    std::vector<Extent> along = {};    ///< of n . p, for each group and each plane of the world
 
     void clear();
-    void add(const PreparedScene& prepared, const Vec3Array& positions, const IndexRange& range);
+    void add(const PreparedScene& prepared, const SurfacePoints& surfaces, const IndexRange& range);
+
+    /// True only when no source of the light is above the horizon of any point of the group.
+    bool face_away(std::size_t group, const SourceGroup& light) const;
 
   private:
     std::vector<double> scratch_ = {};
@@ -24,6 +29,7 @@ struct PointGroups {
 /// What may stand between one group of points and a light; the shapes are
 /// [first_shape, last_shape) of Blockers::shapes.
 struct BlockedBy {
+    bool away = false;                            ///< nothing of the light can reach them
     bool any = false;                             ///< anything, translucent or not
     bool facets = false;                          ///< facets may
     bool filters = false;                         ///< something translucent may

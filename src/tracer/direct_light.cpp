@@ -171,7 +171,9 @@ void add_light(const PreparedScene& prepared, const SourceGroup& light,
     work.blockers.find(prepared, work.points, light);
     work.shaded.clear();
     for (std::size_t index = 0; index < work.blocks.size(); ++index) {
-        if (prepared.shadows && work.blockers.groups[index].any)
+        const BlockedBy& by = work.blockers.groups[index];
+        if (by.away) continue;
+        if (prepared.shadows && by.any)
             work.shaded.push_back(index);
         else
             add_open_block(light, surfaces, work.blocks[index], work.arrival, radiance);
@@ -192,7 +194,7 @@ void find_blocks(const PreparedScene& prepared, const SurfacePoints& surfaces, L
             block.shines |= shines;
             work.receives[i] = shines || surfaces.diffuse[i] > 0;
         }
-        work.points.add(prepared, surfaces.position, {block.first, block.last});
+        work.points.add(prepared, surfaces, {block.first, block.last});
         work.blocks.push_back(block);
     }
 }

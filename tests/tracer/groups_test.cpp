@@ -3,6 +3,7 @@
 #include "support/small_scenes.h"
 #include "support/support.h"
 #include "tracer/accel/shaft.h"
+#include "tracer/blockers.h"
 #include "tracer/prepared/shapes.h"
 
 #include "penumbra/tracer.h"
@@ -110,6 +111,45 @@ TEST_CASE("groups of rays, meet the spheres and planes that each ray meets") {
     CHECK(found > count / 4);
 }
 
+TEST_CASE("groups of points, face away from a light only if each of them does") {
+    Random random;
+    const Scene scene = test::empty_scene();
+    const PreparedScene prepared(scene);
+    int away = 0, apart = 0;
+    for (int round = 0; round < 2000; ++round) {
+        const bool parallel = round % 2 == 0;
+        SourceGroup light;
+        for (int k = 0; k < (parallel ? 1 : 3); ++k) {
+            light.sources.push_back(
+                {.type = parallel ? Light::Type::directional : Light::Type::point,
+                 .position = random.vector(9),
+                 .axis = random.vector(1).normalized()});
+            light.box.extend(light.sources.back().position);
+        }
+        constexpr std::size_t count = 6;
+        SurfacePoints surfaces(count);
+        surfaces.count = count;
+        const Vec3 normal = random.vector(1);
+        for (std::size_t i = 0; i < count; ++i) {
+            surfaces.position.set(i, random.vector(2));
+            surfaces.normal.set(i, (normal + random.vector(0.1)).normalized());
+        }
+        PointGroups points;
+        points.add(prepared, surfaces, {0, count});
+        bool lit = false;
+        for (std::size_t i = 0; i < count; ++i)
+            for (const PreparedSource& source : light.sources)
+                lit |= surfaces.normal[i].dot(
+                           parallel ? -source.axis : source.position - surfaces.position[i]) > 0;
+        if (points.face_away(0, light)) {
+            ++away;
+            if (lit) FAIL("group of round " << round);
+        }
+        apart += !lit;
+    }
+    CHECK(away > apart * 2 / 3);
+}
+
 TEST_CASE("groups of points, are shaded as each point by itself") {
     // Two lights, spheres and facets; a picture of 1 x 1 tiles has no groups to speak of.
     Random random;
@@ -125,7 +165,8 @@ TEST_CASE("groups of points, are shaded as each point by itself") {
     scene.planes = {{"floor", {0, -4, 0}, {0, 1, 0}, 0}};
     scene.materials[0].reflection = Color(0.4F);
     scene.lights = {{.name = "a", .position = {5, 9, 6}, .penumbra = {.delta = 0.8}},
-                    {.name = "b", .position = {-7, 5, 2}, .intensity = 0.5}};
+                    {.name = "b", .position = {-7, 5, 2}, .intensity = 0.5},
+                    {.name = "c", .type = Light::Type::directional, .direction = {1, -1, -1}}};
     RenderOptions options = {.width = 96, .height = 72, .max_depth = 4};
     const NormalisedScene normalised = normalise(scene, options);
     const Image whole = render(normalised, options);
