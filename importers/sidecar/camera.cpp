@@ -136,7 +136,8 @@ void lay_camera(const Layer& layer, Scene& scene, CameraAims& aims, const Bounds
     set_lens(camera, keys);
     if (keys.up) camera.up = *keys.up;
     if (!(keys.position && keys.look_at)) check(*section, camera);
-    if (aims.framed.contains(scene.camera)) refit(camera, scene, aspect);
+    // It need not be fitted to the scene where it is told where to stand.
+    if (aims.framed.contains(scene.camera) && !keys.position) refit(camera, scene, aspect);
     turn(camera, scene.camera, keys, aims, box);
     check(*section, camera);
 }

@@ -60,8 +60,7 @@ void reaches(const Scene& scene, std::span<const Vec3> directions, std::span<dou
     const bool one_by_one = 3 * facet_count(scene) <= most_corners;
     const bool empty = !(bounds(scene).radius() > 0);
     std::vector<Bounds> boxes;
-    if (!one_by_one)
-        for (const Mesh& mesh : scene.meshes) boxes.push_back(box_around_facets(mesh));
+    for (const Mesh& mesh : scene.meshes) boxes.push_back(box_around_facets(mesh));
     for (std::size_t k = 0; k < directions.size(); ++k) {
         const Vec3& d = directions[k];
         Reach all = {d};
@@ -69,12 +68,15 @@ void reaches(const Scene& scene, std::span<const Vec3> directions, std::span<dou
             const Mesh& mesh = scene.meshes[instance.mesh];
             if (mesh.triangles.empty()) continue;
             const Matrix& m = instance.transform;
-            Reach own = in_mesh(d, m);
-            if (one_by_one)
-                own.extend(mesh);
-            else
-                own.extend(boxes[instance.mesh]);
             const double origin = Vec3(m[3][0], m[3][1], m[3][2]).dot(d);
+            // Rounding keeps order: no corner of a facet reaches farther than those of the box.
+            Reach own = in_mesh(d, m);
+            own.extend(boxes[instance.mesh]);
+            if (own.farthest + origin <= all.farthest) continue;
+            if (one_by_one) {
+                own = in_mesh(d, m);
+                own.extend(mesh);
+            }
             all.farthest = std::max(all.farthest, own.farthest + origin);
         }
         for (const Sphere& sphere : scene.spheres)

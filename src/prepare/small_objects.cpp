@@ -92,6 +92,27 @@ bool has_short_edge(const Mesh& mesh, const Matrix& transform, double least) {
     });
 }
 
+// The length of the shortest edge that has one, in the mesh's units; infinite without any.
+double shortest_edge(const Mesh& mesh) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& triangle : mesh.triangles)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double square =
+                (Vec3(mesh.positions[triangle[i]]) - Vec3(mesh.positions[triangle[(i + 1) % 3]]))
+                    .length2();
+            if (square > 0) least = std::min(least, square);
+        }
+    return std::sqrt(least);
+}
+
+// No direction is shortened to less than this. Of the singular values s1 >= s2 >= s3 of the linear
+// part, s3 = |det| / (s1 s2), and s1 s2 is at most half of the sum of all their squares.
+double least_scale(const Matrix& m) {
+    double squares = 0;
+    for (int row = 0; row < 3; ++row) squares += Vec3(m[row][0], m[row][1], m[row][2]).length2();
+    return squares > 0 ? 2 * std::abs(m.determinant()) / squares : 0;
+}
+
 // Around each part of a mesh that hangs together.
 std::vector<Bounds> boxes_of_parts(const Mesh& mesh) {
     std::unordered_map<Vec3f, Index, PointHash> places;
@@ -116,11 +137,19 @@ std::vector<Bounds> boxes_of_parts(const Mesh& mesh) {
 // The objects, those with short edges taken apart.
 std::vector<Object> parts_of(const Scene& scene, const std::vector<Object>& whole, double least) {
     std::map<Index, std::vector<Bounds>> known;  // by mesh
+    std::map<Index, double> shortest;            // edges, by mesh
+    const auto may_have_short_edge = [&](const Instance& instance) {
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        const auto [edge, fresh] = shortest.try_emplace(instance.mesh);
+        if (fresh) edge->second = shortest_edge(mesh);
+        constexpr double rounding = 1e-9;
+        return edge->second * least_scale(instance.transform) < least * (1 + rounding) &&
+               has_short_edge(mesh, instance.transform, least);
+    };
     std::vector<Object> parts;
     for (const Object& object : whole) {
         if (object.instance == no_index || (has_thickness(object) && object.thickness < least) ||
-            !has_short_edge(scene.meshes[scene.instances[object.instance].mesh],
-                            scene.instances[object.instance].transform, least)) {
+            !may_have_short_edge(scene.instances[object.instance])) {
             parts.push_back(object);
             continue;
         }
