@@ -229,9 +229,11 @@ void give_background(Imported& result) {
     if (!result.auto_exposure) result.scene.background *= float(std::exp2(-result.render.exposure));
 }
 
-// Returns the bounds of what they lay. `made_for` is what the surfaces of the models were made for.
-Bounds lay_layers(const Request& request, const LoadOptions& options, Imported& result,
-                  std::set<Illumination>& made_for) {
+// Returns the bounds of what they lay; nothing, and leaves `result` as far as it is, where models
+// have surfaces that are not made for the light that there is. `made_for` is what they are made
+// for.
+std::optional<Bounds> lay_layers(const Request& request, const LoadOptions& options,
+                                 Imported& result, std::set<Illumination>& made_for) {
     Scene& scene = result.scene;
     TextureFiles files;
     NewMaterials made;
@@ -258,6 +260,9 @@ Bounds lay_layers(const Request& request, const LoadOptions& options, Imported& 
         [&](const Layer& layer) { lay_camera(layer, scene, aims, box, aspect); });
     if (!sized && scene.camera != no_index) take_shape(scene.cameras[scene.camera], result.render);
     light_scene(request, options, scene);
+    result.illumination = scene.environment ? Illumination::environment : Illumination::lamps;
+    made_for.erase(result.illumination);
+    if (!made_for.empty()) return std::nullopt;
     if (own_lights && options.studio != Studio::black && !scene.environment && !scene.sky &&
         !says_background(request))
         give_background(result);
@@ -276,24 +281,27 @@ struct Laid {
     Bounds box = {};
 };
 
-// Whether there will be an environment is only known in the end; where a guess was wrong the models
-// are read again.
+// What the light will be is only known in the end; where a guess was wrong the models are read
+// again.
+Illumination likely_illumination(const Request& request, const LoadOptions& options) {
+    if (says_environment(request)) return Illumination::environment;
+    if (options.studio == Studio::black) return options.model.illumination;
+    const auto has_lights = [](const Layer& sidecar) { return sidecar.table.contains("light"); };
+    return std::ranges::any_of(request.sidecars, has_lights) ? Illumination::lamps
+                                                             : Illumination::by_model;
+}
+
 Laid lay_well_lit(const Request& request, const LoadOptions& given) {
     LoadOptions options = given;
-    if (says_environment(request))
-        options.model.illumination = Illumination::environment;
-    else if (options.studio != Studio::black)
-        options.model.illumination = Illumination::by_model;
+    options.model.illumination = likely_illumination(request, given);
     while (true) {
         Laid laid;
         std::set<Illumination> made_for;
-        laid.box = lay_layers(request, options, laid.imported, made_for);
-        const Illumination found =
-            laid.imported.scene.environment ? Illumination::environment : Illumination::lamps;
-        laid.imported.illumination = found;
-        made_for.erase(found);
-        if (made_for.empty()) return laid;
-        options.model.illumination = found;
+        if (const auto box = lay_layers(request, options, laid.imported, made_for)) {
+            laid.box = *box;
+            return laid;
+        }
+        options.model.illumination = laid.imported.illumination;
     }
 }
 
