@@ -273,7 +273,7 @@ std::optional<Bounds> lay_layers(const Request& request, const LoadOptions& opti
     check_used(made, scene);
     // After complete(), so that the rig's lights can be changed as well.
     for (const Layer& layer : request.settings) edit_lights(layer, scene);
-    return box;
+    return std::optional(box);
 }
 
 struct Laid {
