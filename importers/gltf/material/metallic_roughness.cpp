@@ -244,6 +244,10 @@ BakedLobes Plan::baked(const Map& laid, const Map& level) {
 }
 
 void Plan::bake() {
+    // The images move when others are made.
+    const bool mixed = has_lobe_maps(maps);
+    const DielectricReflectance dielectric =
+        reflectance_of(maps).value_or(dielectric_reflectance(maps.specular.factor, maps.white));
     const auto of_roughness = std::find_if(inputs.begin(), inputs.end(), [&](const Input& input) {
         return std::find(input.parts.begin(), input.parts.end(), &maps.roughness) !=
                input.parts.end();
@@ -258,14 +262,12 @@ void Plan::bake() {
     const std::size_t lobes = specular_lobes.lobes.size();
     ImageMap scattered = laid.laid;
     scattered.texture = lobe.scattered;
-    lay_specular_lobes(
-        read.material, std::move(specular_lobes), scattered,
-        reflectance_of(maps).value_or(dielectric_reflectance(maps.specular.factor, maps.white)),
-        maps.illumination);
+    lay_specular_lobes(read.material, std::move(specular_lobes), scattered, dielectric,
+                       maps.illumination);
     if (read.material.specular_lobes && read.material.specular_lobes->level.texture != no_index)
         read.note_set(level, [](Material& m) -> ImageMap& { return m.specular_lobes->level; });
     if (scattered.texture == no_index) read.lay_base();
-    if (!has_lobe_maps(maps)) return;
+    if (!mixed) return;
     read.note_loss(Loss::approximated, fmt::format("{} texture: mixed from {} Phong lobe{}",
                                                    subject(), lobes, lobes == 1 ? "" : "s"));
 }

@@ -220,7 +220,7 @@ bool MaterialMaker::lobe_images(MetallicRoughness& surface) {
 void MaterialMaker::bake(LobeMaps& maps, const MapImage& frame, const MapImage& of_level) {
     maps.wrap_u = maps.wrap_v = frame.operands.clamp ? Wrap::clamp : Wrap::repeat;
     maps.place = frame.file.string();
-    const bool plain = keeps_base(maps);
+    const bool plain = keeps_base(maps), mixed = has_lobe_maps(maps);
     LobeImages images = bake_specular_lobes(maps);
     std::string key;
     for (const TexelSource* source : {&maps.base, &maps.metallic, &maps.roughness, &maps.specular})
@@ -244,7 +244,7 @@ void MaterialMaker::bake(LobeMaps& maps, const MapImage& frame, const MapImage& 
     lay_specular_lobes(material, std::move(specular_lobes), scattered, {.f0 = maps.specular.factor},
                        illumination);
     if (plain) lay_base();
-    if (!has_lobe_maps(maps)) return;
+    if (!mixed) return;
     note_loss(Loss::approximated, entry.line,
               fmt::format("metallic and roughness images: mixed from {} Phong lobe{}",
                           images.lobes.size(), images.lobes.size() == 1 ? "" : "s"));
