@@ -242,6 +242,16 @@ LobeImages bake_specular_lobes(const LobeMaps& maps) {
     return images;
 }
 
+void set_constant_lobes(Material& material, float metallic, float roughness,
+                        const DielectricReflectance& dielectric, Illumination illumination,
+                        bool multiplied) {
+    const bool white = multiplied && metallic == 1 && illumination == Illumination::environment;
+    const Color factor = material.color;
+    if (white) material.color = Color(1);
+    set_metallic_roughness(material, metallic, roughness, dielectric, illumination);
+    if (white) material.color = factor;
+}
+
 void lay_specular_lobes(Material& material, SpecularLobes specular_lobes, const ImageMap& scattered,
                         const DielectricReflectance& dielectric, Illumination illumination) {
     material.specular_lobes = std::move(specular_lobes);

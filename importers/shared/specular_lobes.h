@@ -52,6 +52,13 @@ bool keeps_base(const LobeMaps& maps);
 /// with a K_D of 1 - reflectance, and a reflectance in colour tints the lobes.
 LobeImages bake_specular_lobes(const LobeMaps& maps);
 
+/// set_metallic_roughness() for one metalness and roughness. With `multiplied` an image or colours
+/// of vertices multiply material.color: of a metal under an environment, whose law is not linear in
+/// it, what they multiply is white.
+void set_constant_lobes(Material& material, float metallic, float roughness,
+                        const DielectricReflectance& dielectric, Illumination illumination,
+                        bool multiplied);
+
 /// Gives `material` specular lobes from there, its textures and transforms set. `scattered` takes
 /// the place of the base colour, if it has a texture; else nothing is metal and `dielectric`
 /// is the reflectance.

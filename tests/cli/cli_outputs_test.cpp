@@ -173,7 +173,7 @@ TEST_CASE(
 
 TEST_CASE("render shows the grey behind a file's own lights as grey, whatever the exposure is") {
     const TempDir folder;
-    // A facet of a mirror under a lamp of 5000 candela: metered far from exposure 0.
+    // A facet under a lamp of 5000 candela: metered far from exposure 0.
     write(folder / "lamp.gltf", R"({"asset": {"version": "2.0"}, "scene": 0,
         "scenes": [{"nodes": [0]}],
         "nodes": [{"translation": [0, 0, 3], "extensions": {"KHR_lights_punctual": {"light": 0}}}],

@@ -176,4 +176,9 @@ TEST_CASE("Phong, of a rough dielectric in light from all around scatters its re
     set_metallic_roughness(polished, 0, 0, 0.04F, Illumination::environment);
     CHECK(polished.color == Color(0.5F, 0.3F, 0.1F));
     CHECK(polished.diffuse == Approx(0.96));
+    Material glass;  // its colour tints what shines through
+    glass.color = {0.5F, 0.3F, 0.1F};
+    glass.opacity = 0.2F;
+    set_metallic_roughness(glass, 0, 0.6F, 0.04F, Illumination::environment);
+    CHECK(glass.color == Color(0.5F, 0.3F, 0.1F));
 }

@@ -195,15 +195,9 @@ void Plan::make_constant() {
         read.note_loss(Loss::approximated, "what it reflects is not tinted by the base colour's "
                                            "image: the surface is transparent");
     }
-    // What multiplies the colour of a metal, an image or colours of vertices, multiplies that of a
-    // white one.
-    const float metallic = constant_of(maps.metallic)->x;
-    const Color factor = read.material.color;
-    const bool white = metallic == 1 && (maps.base.raster != nullptr || read.has_vertex_colors());
-    if (white) read.material.color = Color(1);
-    set_metallic_roughness(read.material, metallic, constant_of(maps.roughness)->x, dielectric,
-                           maps.illumination);
-    if (white) read.material.color = factor;
+    set_constant_lobes(read.material, constant_of(maps.metallic)->x, constant_of(maps.roughness)->x,
+                       dielectric, maps.illumination,
+                       maps.base.raster != nullptr || read.has_vertex_colors());
     read.lay_base();
 }
 

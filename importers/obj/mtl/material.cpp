@@ -7,6 +7,7 @@
 #include "importers/obj/mtl/maker.h"
 #include "importers/obj/text/encoding.h"
 #include "importers/obj/text/tally.h"
+#include "importers/shared/specular_lobes.h"
 #include "scene/surface/metallic_roughness.h"
 
 #include "penumbra/light_model.h"
@@ -161,12 +162,13 @@ void MaterialMaker::metallic_roughness() {
                                  .f0 = ior > 1 ? r * r : 0.04F};
     material.ambient = values.ambient.value_or(Color(1)) * ambience();
     if (lobe_images(surface)) return;
-    // An image of the colour multiplies that of a white metal.
-    const bool white = surface.metallic == 1 && base;
-    const Color factor = material.color;
-    if (white) material.color = Color(1);
-    set_metallic_roughness(material, surface.metallic, surface.roughness, surface.f0, illumination);
-    if (white) material.color = factor;
+    // Under lamps an index beyond 3 keeps the law of what is clear.
+    const DielectricReflectance dielectric =
+        illumination == Illumination::environment
+            ? dielectric_reflectance(Color(surface.f0))
+            : DielectricReflectance{Color(surface.f0), surface.f0};
+    set_constant_lobes(material, surface.metallic, surface.roughness, dielectric, illumination,
+                       base.has_value());
     lay_base();
 }
 

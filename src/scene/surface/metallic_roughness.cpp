@@ -220,14 +220,15 @@ void set_scattered(Material& material, const RoughnessLobe& shape, double metall
                          : base + (dielectric.tint() - base) * float(share * (1 - metallic));
 }
 
-// In light from all around: the colour is that of what is scattered, as far as it is another than
-// the base colour, K_D that of a white surface.
+// In light from all around: K_D is that of a white surface, the colour that of what is scattered as
+// far as it is another than the base colour. Where light shines through the surface the colour
+// tints that, and stays.
 void set_surrounded_scattered(Material& material, const RoughnessLobe& shape, double metallic,
                               const DielectricReflectance& dielectric) {
     const Color white = scattered_color(shape, Color(1), metallic, dielectric, 0);
     const double whole = largest(white);
     material.diffuse = float(whole);
-    if (shape.even > 0 && whole > 1e-6)
+    if (shape.even > 0 && whole > 1e-6 && material.opacity >= 1)
         material.color =
             scattered_color(shape, material.color, metallic, dielectric, 0) * float(1 / whole);
 }
