@@ -3,6 +3,7 @@
 #include "tracer/prepared/scene_boxes.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace penumbra {
 
@@ -15,6 +16,29 @@ bool plane_between(const PreparedPlane& plane, const Extent& points, const Exten
     const bool above = points.low >= plane.distance - on_it && sources.low > plane.distance;
     const bool below = points.high <= plane.distance + on_it && sources.high < plane.distance;
     return !above && !below;
+}
+
+// Whether a box may lie between points and a light.
+class Between {
+  public:
+    Between(const Bounds& points, const SourceGroup& light) {
+        if (light.parallel())
+            sweep_ = make_sweep(points, -light.sources.front().axis);
+        else
+            shaft_ = make_shaft(points, light.box);
+    }
+    bool operator()(const Bounds& box) const {
+        return sweep_ ? touches(*sweep_, box) : touches(*shaft_, box);
+    }
+
+  private:
+    std::optional<Sweep> sweep_;
+    std::optional<Shaft> shaft_;
+};
+
+// Whether a sphere whose box does may.
+bool may_block(const Sphere& sphere, const Bounds& points, const SourceGroup& light) {
+    return touches(make_capsule(points, light.box), sphere.center, sphere.radius);
 }
 
 }  // namespace
@@ -53,8 +77,7 @@ bool PointGroups::face_away(std::size_t group, const SourceGroup& light) const {
         return highest < 0;
     };
     const PreparedSource& first = light.sources.front();
-    if (first.type == Light::Type::directional && light.sources.size() == 1)
-        return below(-first.axis, -first.axis);
+    if (light.parallel()) return below(-first.axis, -first.axis);
     return first.type != Light::Type::directional &&
            below(light.box.min - points.max, light.box.max - points.min);
 }
@@ -79,17 +102,15 @@ void Blockers::find_group(const PreparedScene& prepared, const PointGroups& poin
                           light.along[k]))
             add(prepared.first_plane() + Index(k));
     if (facets || !spheres_.empty()) {
-        const Shaft shaft = make_shaft(points.boxes[index], light.box);
-        const auto in_shaft = [&](const Bounds& box) { return touches(shaft, box); };
-        const Capsule capsule = make_capsule(points.boxes[index], light.box);
+        const Between between(points.boxes[index], light);
         for (const Index object : spheres_) {
             const Sphere& sphere = prepared.sphere(object);
-            if (in_shaft(box_of(sphere)) && touches(capsule, sphere.center, sphere.radius))
+            if (between(box_of(sphere)) && may_block(sphere, points.boxes[index], light))
                 add(object);
         }
         group.facets =
-            facets && visit_boxes(*prepared.facet_boxes, in_shaft, [](Index) { return true; });
-        group.filters |= group.facets && visit_boxes(prepared.translucent_boxes, in_shaft,
+            facets && visit_boxes(*prepared.facet_boxes, between, [](Index) { return true; });
+        group.filters |= group.facets && visit_boxes(prepared.translucent_boxes, between,
                                                      [](Index) { return true; });
     }
     group.last_shape = shapes.size();
@@ -101,13 +122,12 @@ void Blockers::find(const PreparedScene& prepared, const PointGroups& points,
     groups.clear();
     shapes.clear();
     spheres_.clear();
-    const Shaft shaft = make_shaft(points.all, light.box);
-    const auto in_shaft = [&](const Bounds& box) { return touches(shaft, box); };
-    visit_boxes(prepared.sphere_boxes, in_shaft, [&](Index sphere) {
+    const Between between(points.all, light);
+    visit_boxes(prepared.sphere_boxes, between, [&](Index sphere) {
         spheres_.push_back(sphere);
         return false;
     });
-    const bool facets = visit_boxes(*prepared.facet_boxes, in_shaft, [](Index) { return true; });
+    const bool facets = visit_boxes(*prepared.facet_boxes, between, [](Index) { return true; });
     for (std::size_t i = 0; i < points.boxes.size(); ++i)
         find_group(prepared, points, light, facets);
 }

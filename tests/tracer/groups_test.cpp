@@ -38,7 +38,7 @@ bool holds(const Bounds& box, const Vec3& p) {
 
 TEST_CASE("groups of rays, touch every box and ball that one of the rays touches") {
     Random random;
-    int shafts_apart = 0, capsules_apart = 0, beams_apart = 0;
+    int shafts_apart = 0, capsules_apart = 0, beams_apart = 0, sweeps_apart = 0;
     for (int round = 0; round < 3000; ++round) {
         const Bounds from = random_box(random, 4, 1), to = random_box(random, 4, 1),
                      box = random_box(random, 6, 1);
@@ -48,12 +48,17 @@ TEST_CASE("groups of rays, touch every box and ball that one of the rays touches
         const Shaft shaft = make_shaft(from, to);
         const Capsule capsule = make_capsule(from, to);
         const Beam beam = {.origins = from, .directions = directions};
+        Vec3 direction = random.vector(1);
+        if (round % 3 == 0) direction[round % 9 / 3] = 0;
+        const Sweep sweep = make_sweep(from, direction);
         const bool shaft_apart = !touches(shaft, box);
         const bool capsule_apart = !touches(capsule, center, radius);
         const bool beam_apart = !touches(beam, box);
+        const bool sweep_apart = !touches(sweep, box);
         shafts_apart += shaft_apart;
         capsules_apart += capsule_apart;
         beams_apart += beam_apart;
+        sweeps_apart += sweep_apart;
         for (int k = 0; k < 60; ++k) {
             const Vec3 start = point_in(random, from), end = point_in(random, to);
             const Vec3 point = start + (end - start) * random(0, 1);
@@ -62,11 +67,14 @@ TEST_CASE("groups of rays, touch every box and ball that one of the rays touches
                 FAIL("capsule of round " << round);
             const Vec3 far = start + point_in(random, directions) * random(0, 20);
             if (beam_apart && holds(box, far)) FAIL("beam of round " << round);
+            const Vec3 along = start + direction * random(0, 20);
+            if (sweep_apart && holds(box, along)) FAIL("sweep of round " << round);
         }
     }
     CHECK(shafts_apart > 1000);
     CHECK(capsules_apart > 1000);
     CHECK(beams_apart > 1000);
+    CHECK(sweeps_apart > 1000);
 }
 
 TEST_CASE("groups of rays, meet the spheres and planes that each ray meets") {

@@ -53,6 +53,27 @@ bool touches(const Shaft& shaft, const Bounds& box) {
     return true;
 }
 
+Sweep make_sweep(const Bounds& from, const Vec3& direction) {
+    return {from, {1 / direction.x, 1 / direction.y, 1 / direction.z}};
+}
+
+// Along every axis the two overlap for a while; the sweep touches the box where these times do.
+bool touches(const Sweep& sweep, const Bounds& box) {
+    double enter = 0, leave = no_limit;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double ahead = box.min[axis] - sweep.from.max[axis];
+        const double behind = box.max[axis] - sweep.from.min[axis];
+        const double inverse = sweep.inverse[axis];
+        if (std::isinf(inverse)) {
+            if (ahead > 0 || behind < 0) return false;
+            continue;
+        }
+        enter = std::max(enter, (inverse > 0 ? ahead : behind) * inverse);
+        leave = std::min(leave, (inverse > 0 ? behind : ahead) * inverse);
+    }
+    return enter <= leave * (1 + 1e-12) + 1e-12;
+}
+
 Capsule make_capsule(const Bounds& from, const Bounds& to) {
     const double radius = from.radius(), growth = to.radius() - radius;
     const Vec3 way = to.center() - from.center();

@@ -26,6 +26,17 @@ Shaft make_shaft(const Bounds& from, const Bounds& to);
 /// False only when no segment from one box to the other touches `box`.
 bool touches(const Shaft& shaft, const Bounds& box);
 
+/// All that a box passes over on its way along a direction, without end.
+struct Sweep {
+    Bounds from;
+    Vec3 inverse = {};  ///< of the direction, by axis; infinite along those that it does not go
+};
+
+Sweep make_sweep(const Bounds& from, const Vec3& direction);
+
+/// False only when no ray from `from` along the direction touches `box`.
+bool touches(const Sweep& sweep, const Bounds& box);
+
 /// The convex hull of the balls around two boxes, which holds their shaft.
 struct Capsule {
     Vec3 start = {}, axis = {};   ///< centre of the first ball; unit, to that of the second

@@ -74,6 +74,11 @@ struct SourceGroup {
     std::vector<PreparedSource> sources = {};
     Bounds box = {};                 ///< of their positions
     std::vector<Extent> along = {};  ///< of n . position, for each plane
+
+    /// Does all of its light go one way?
+    bool parallel() const {
+        return sources.size() == 1 && sources.front().type == Light::Type::directional;
+    }
 };
 
 /// A point with normal . p = distance lies on the plane.
