@@ -21,11 +21,11 @@ inline constexpr double far_away = 1;
 
 /// p * m, without the division that a projection would need.
 inline Vec3 moved(const Vec3f& p, const Matrix& m) {
-    Vec3 result;
-    for (int column = 0; column < 3; ++column)
-        result[column] = double(p.x) * m[0][column] + double(p.y) * m[1][column] +
-                         double(p.z) * m[2][column] + m[3][column];
-    return result;
+    const double x = p.x, y = p.y, z = p.z;
+    const auto along = [&](int column) {
+        return x * m[0][column] + y * m[1][column] + z * m[2][column] + m[3][column];
+    };
+    return {along(0), along(1), along(2)};
 }
 
 /// Around all of the points, or around those whose entry of `chosen` is not 0.

@@ -33,6 +33,12 @@ constexpr double distance_cell = least_radius / 400,
 // A border through 0 would cut the planes that are most frequent.
 constexpr double border = 0.37;
 
+// std::floor() without a call.
+std::int64_t floored(double value) {
+    const auto whole = std::int64_t(value);
+    return whole - (double(whole) > value ? 1 : 0);
+}
+
 // Calls visit(hash) for the cells of a plane. A normal and its opposite are the same.
 template <class Visit>
 void each_cell(Vec3 normal, double distance, Visit visit) {
@@ -47,10 +53,14 @@ void each_cell(Vec3 normal, double distance, Visit visit) {
         const bool is_distance = i == 3;
         // What a hostile scene has is not near to anything.
         const double at = is_distance ? std::clamp(distance, -1e6, 1e6) : normal[int(i)];
-        const double cell = is_distance ? distance_cell : normal_cell;
-        const double margin = is_distance ? distance_margin : normal_margin;
-        first[i] = std::int64_t(std::floor((at - margin) / cell + border));
-        last[i] = std::int64_t(std::floor((at + margin) / cell + border));
+        constexpr double normals = 1 / normal_cell, distances = 1 / distance_cell;
+        const double place = at * (is_distance ? distances : normals) + border;
+        const double margin =
+            is_distance ? distance_margin / distance_cell : normal_margin / normal_cell;
+        const std::int64_t cell = floored(place);
+        const double within = place - double(cell);
+        first[i] = cell - (within < margin ? 1 : 0);
+        last[i] = cell + (within >= 1 - margin ? 1 : 0);
         if (first[i] != last[i]) twice |= 1U << i;
     }
     for (unsigned some = twice;; some = (some - 1) & twice) {
@@ -150,7 +160,9 @@ std::vector<InCell> facets_by_cell(const WorldFacets& facets) {
         Recent recent;
         for (auto number = Index(first); number < last; ++number) {
             while (number >= facets.first_of(instance + 1)) ++instance;
-            const auto facet = facets.at(instance, number - facets.first_of(instance));
+            const Index in_mesh = number - facets.first_of(instance);
+            facets.prefetch(instance, in_mesh + 16);
+            const auto facet = facets.at(instance, in_mesh);
             if (!facet) continue;
             const bool folds = recent.lies_on_one(*facet, instance);
             recent.add(*facet, instance);

@@ -38,18 +38,18 @@ Index WorldFacets::instance_of(Index facet) const {
 
 std::optional<WorldFacet> WorldFacets::at(Index instance, Index facet) const {
     const Mesh& mesh = mesh_of(instance);
-    WorldFacet result;
-    for (std::size_t i = 0; i < 3; ++i)
-        result.corners[i] = moved(mesh.positions[mesh.triangles[facet][i]], places_[instance]);
-    const auto& [a, b, c] = result.corners;
+    const auto& [first, second, third] = mesh.triangles[facet];
+    const Matrix& to_here = places_[instance];
+    const Vec3 a = moved(mesh.positions[first], to_here),
+               b = moved(mesh.positions[second], to_here),
+               c = moved(mesh.positions[third], to_here);
     const Vec3 normal = (b - a).cross(c - a);
     const double area = normal.length();
     const double longest = std::max({(b - a).length2(), (c - a).length2(), (c - b).length2()});
     if (!(area * area > longest * (least_overlap * least_overlap)) || !std::isfinite(area))
         return {};
     // A transform that mirrors turns the winding over, not the front.
-    result.normal = normal / (mirrored_[instance] ? -area : area);
-    return result;
+    return WorldFacet{{a, b, c}, normal / (mirrored_[instance] ? -area : area)};
 }
 
 bool WorldFacets::plain(Index instance, Index facet) const {
