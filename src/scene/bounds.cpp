@@ -66,6 +66,18 @@ bool contains(const Bounds& box, const Bounds& other) {
     return true;
 }
 
+// Around the vertices that facets use, where an instance shows them.
+Bounds tight_box(const Mesh& mesh, const std::vector<char>& used, const Matrix& transform) {
+    Vec3 low = Bounds().min, high = Bounds().max;  // in registers
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        if (used[i] == 0) continue;
+        const Vec3 p = moved(mesh.positions[i], transform);
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    return {.min = low, .max = high};
+}
+
 // The instances that reach furthest along the axes, by the boxes around them, then all.
 std::vector<std::size_t> far_ones_first(const std::vector<Bounds>& boxes) {
     std::vector<std::size_t> order;
@@ -96,14 +108,13 @@ Bounds bounds(const Scene& scene) {
         const Instance& instance = scene.instances[index];
         const Mesh& mesh = scene.meshes[instance.mesh];
         if (mesh.triangles.empty() || contains(box, boxes[index])) continue;
-        if (keeps_axes(instance.transform)) {
-            box.extend(boxes[index].min);
-            box.extend(boxes[index].max);
-            continue;
-        }
-        const Corners& known = *corners[instance.mesh];
-        for (std::size_t i = 0; i < known.used.size(); ++i)
-            if (known.used[i] != 0) box.extend(moved(mesh.positions[i], instance.transform));
+        const Bounds around =
+            keeps_axes(instance.transform)
+                ? boxes[index]
+                : tight_box(mesh, corners[instance.mesh]->used, instance.transform);
+        if (around.empty()) continue;
+        box.extend(around.min);
+        box.extend(around.max);
     }
     for (const Sphere& sphere : scene.spheres) {
         box.extend(sphere.center - Vec3(sphere.radius));
