@@ -17,20 +17,22 @@ constexpr std::size_t block_size = 64;  // neighbouring surface points that are 
 // What translucent surfaces leave of the light along the shadow ray from a surface point: a factor
 // for each crossing, except those within shadow_margin of the one before.
 Vec3 filtered(const PreparedScene& prepared, const SurfacePoints& surfaces, std::size_t slot,
-              const Vec3& toward, double distance, Media& media) {
-    const Vec3 origin = surfaces.position[slot];
+              LightWork& work) {
+    const Vec3 origin = surfaces.position[slot], toward = work.arrival.toward[slot];
+    const double end = work.arrival.distance[slot] - shadow_margin;
+    TranslucentFacets facets(*prepared.facets, origin, toward, end, work.crossed);
     Vec3 light(1);
     MediumStack inside = surfaces.inside[slot];
     double from = 0;
     while (light != Vec3(0)) {
-        Hit hit = {.t = distance - shadow_margin};
+        Hit hit = {.t = end};
         const double nearest = from + shadow_margin;
         const bool shape = translucent_shape(prepared, origin, toward, nearest, hit);
-        const bool facet = prepared.facets->translucent(origin, toward, nearest, hit.t, hit);
+        const bool facet = facets.next(nearest, hit);
         if (!shape && !facet) break;
         light *= light_through(prepared, origin, toward, hit);
         const PreparedMaterial& material = prepared.material_of(hit.object);
-        if (!media.toggle(inside, hit.object) && material.absorbs)
+        if (!work.media.toggle(inside, hit.object) && material.absorbs)
             for (int c = 0; c < 3; ++c)
                 light[c] *= std::exp(-material.absorption[c] * (hit.t - from));
         from = hit.t;
@@ -38,20 +40,9 @@ Vec3 filtered(const PreparedScene& prepared, const SurfacePoints& surfaces, std:
     return light;
 }
 
-// Takes from the light of every point that gets some what translucent surfaces keep of it.
-void filter_light(const PreparedScene& prepared, const SurfacePoints& surfaces, const Block& block,
-                  LightWork& work) {
-    LightSamples& arrival = work.arrival;
-    work.media.clear();
-    for (std::size_t i = block.first; i < block.last; ++i) {
-        Vec3 light(1);
-        if (arrival.share[i] != 0 && work.receives[i] != 0)
-            light =
-                filtered(prepared, surfaces, i, arrival.toward[i], arrival.distance[i], work.media);
-        if (light == Vec3(0)) arrival.share[i] = 0;
-        arrival.filter.set(i, light);
-        arrival.filtered.set(i, surfaces.pigment[i] * light);
-    }
+// Does light from where `arrival` says show at a point that faces it?
+bool shows(const LightWork& work, std::size_t i) {
+    return work.arrival.share[i] != 0 && work.arrival.reflected[i] >= work.shown_from[i];
 }
 
 ShadowRays shadow_rays(const SurfacePoints& surfaces, const LightSamples& arrival) {
@@ -60,6 +51,27 @@ ShadowRays shadow_rays(const SurfacePoints& surfaces, const LightSamples& arriva
             .distance = arrival.distance.data(),
             .sin_to_facet = arrival.sin_to_facet.data(),
             .object = surfaces.object.data()};
+}
+
+// Takes from the light of every point that gets some what translucent surfaces keep of it.
+void filter_light(const PreparedScene& prepared, const SurfacePoints& surfaces, const Block& block,
+                  LightWork& work) {
+    LightSamples& arrival = work.arrival;
+    work.media.clear();
+    work.asked.clear();
+    for (std::size_t i = block.first; i < block.last; ++i) {
+        arrival.filter.set(i, Vec3(1));
+        arrival.filtered.set(i, surfaces.pigment[i]);
+        if (shows(work, i)) work.asked.push_back(Index(i));
+    }
+    prepared.facets->find_filtered(shadow_rays(surfaces, arrival), work.asked, work.filtered);
+    const bool shapes = !prepared.translucent_shapes.empty();
+    for (const Index i : shapes ? work.asked : work.filtered) {
+        const Vec3 light = filtered(prepared, surfaces, i, work);
+        if (light == Vec3(0)) arrival.share[i] = 0;
+        arrival.filter.set(i, light);
+        arrival.filtered.set(i, surfaces.pigment[i] * light);
+    }
 }
 
 // Takes the source from the points of a block that opaque spheres and planes hide it from, and
@@ -76,7 +88,7 @@ void ask(const PreparedScene& prepared, const SurfacePoints& surfaces, std::size
     if (!by.facets) return;
     find_sin_to_facet(surfaces, block, arrival);
     for (std::size_t i = block.first; i < block.last; ++i)
-        if (arrival.share[i] != 0 && work.receives[i] != 0) work.asked.push_back(Index(i));
+        if (shows(work, i)) work.asked.push_back(Index(i));
 }
 
 // ---- highlights --------------------------------------------------------------------------------
@@ -119,7 +131,6 @@ Vec3 whole_highlight(const SurfacePoints& surfaces, std::size_t i, const LightSa
 
 void add_highlights(const PreparedSource& source, const SurfacePoints& surfaces, const Block& block,
                     const Vec3Array* filter, LightSamples& arrival, Vec3Array& radiance) {
-    find_reflected(surfaces, block, arrival);
     for (std::size_t i = block.first; i < block.last; ++i) {
         if (arrival.reflected[i] <= 0 || arrival.share[i] == 0 || !surfaces.material[i]->shines)
             continue;
@@ -140,7 +151,9 @@ void add_open_block(const SourceGroup& light, const SurfacePoints& surfaces, con
         aim(source, surfaces, block, arrival);
         weigh(source, block, arrival);
         add_diffuse(source.color, surfaces.pigment, surfaces.diffuse, block, arrival, radiance);
-        if (block.shines) add_highlights(source, surfaces, block, nullptr, arrival, radiance);
+        if (!block.shines) continue;
+        find_reflected(surfaces, block, arrival);
+        add_highlights(source, surfaces, block, nullptr, arrival, radiance);
     }
 }
 
@@ -152,6 +165,7 @@ void add_shaded_blocks(const PreparedScene& prepared, const PreparedSource& sour
     for (const std::size_t index : work.shaded) {
         aim(source, surfaces, work.blocks[index], arrival);
         weigh(source, work.blocks[index], arrival);
+        find_reflected(surfaces, work.blocks[index], arrival);
         ask(prepared, surfaces, index, work);
     }
     prepared.facets->occluded(shadow_rays(surfaces, arrival), work.asked, arrival.share);
@@ -183,6 +197,22 @@ void add_light(const PreparedScene& prepared, const SourceGroup& light,
         add_shaded_blocks(prepared, source, surfaces, work, radiance);
 }
 
+// The least cosine of the mirrored eye ray at which a source shows: any where light is scattered,
+// and none where neither is.
+double shown_from(const SurfacePoints& surfaces, std::size_t i) {
+    constexpr double any = -2, none = 2;
+    if (surfaces.diffuse[i] > 0) return any;
+    const PreparedMaterial& material = *surfaces.material[i];
+    if (!material.shines || surfaces.alpha[i] == 0) return none;
+    const auto from = [&](const PreparedLobe& lobe) {
+        return lobe.specular == 0 ? none : lobe.highlight_end;
+    };
+    const LobeMix& mix = surfaces.lobes[i];
+    double least = from(material.lobes[mix.first]);
+    if (mix.share > 0) least = std::min(least, from(material.lobes[mix.first + 1]));
+    return material.coat ? std::min(least, from(material.coat->lobe)) : least;
+}
+
 // What is the same for all lights.
 void find_blocks(const PreparedScene& prepared, const SurfacePoints& surfaces, LightWork& work) {
     work.blocks.clear();
@@ -190,9 +220,8 @@ void find_blocks(const PreparedScene& prepared, const SurfacePoints& surfaces, L
     for (std::size_t first = 0; first < surfaces.count; first += block_size) {
         Block block = {.first = first, .last = std::min(first + block_size, surfaces.count)};
         for (std::size_t i = block.first; i < block.last; ++i) {
-            const bool shines = surfaces.material[i]->shines && surfaces.alpha[i] > 0;
-            block.shines |= shines;
-            work.receives[i] = shines || surfaces.diffuse[i] > 0;
+            block.shines |= surfaces.material[i]->shines && surfaces.alpha[i] > 0;
+            work.shown_from[i] = shown_from(surfaces, i);
         }
         work.points.add(prepared, surfaces, {block.first, block.last});
         work.blocks.push_back(block);

@@ -259,6 +259,16 @@ double share_at(const PreparedScene& prepared, const Blend& blend, const Geometr
     return std::clamp(image_at(prepared, blend.map, g.texcoord).x, 0.0, 1.0);
 }
 
+// Does a see-through surface let light through alike wherever it is met?
+bool same_everywhere(const PreparedScene& prepared, const PreparedMaterial& material,
+                     const Hit& hit) {
+    const Material& given = *material.source;
+    const bool plain = material.opacity < 1 && !given.alpha_map && !material.other &&
+                       std::holds_alternative<std::monostate>(given.pattern);
+    return plain && (hit.object >= prepared.first_sphere() ||
+                     prepared.facets->placed(hit.object).mesh->colors.empty());
+}
+
 // The factor of light that crosses a surface of one look.
 Vec3 light_through(const PreparedScene& prepared, const PreparedMaterial& material,
                    const Geometry& g, const Hit& hit, const Vec3& point) {
@@ -310,9 +320,11 @@ std::size_t find_surface_point(const PreparedScene& prepared, const Vec3& origin
 
 Vec3 light_through(const PreparedScene& prepared, const Vec3& origin, const Vec3& direction,
                    const Hit& hit) {
+    const PreparedMaterial& material = prepared.material_of(hit.object);
+    if (same_everywhere(prepared, material, hit))
+        return through_at(material, Vec3(material.source->color), 1);
     const Vec3 point = origin + direction * hit.t;
     const Geometry g = geometry_at(prepared, hit, point);
-    const PreparedMaterial& material = prepared.material_of(hit.object);
     const Vec3 own = light_through(prepared, material, g, hit, point);
     if (!material.other || hit.object >= prepared.first_sphere()) return own;
     const double share = share_at(prepared, *material.source->blend, g);

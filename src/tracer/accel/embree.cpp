@@ -66,4 +66,49 @@ unsigned* new_indices(const Device& device, const Geometry& geometry, std::size_
     return static_cast<unsigned*>(new_buffer(device, geometry, RTC_BUFFER_TYPE_INDEX, count));
 }
 
+namespace {
+
+#if RTC_VERSION_MAJOR >= 4
+using Context = RTCRayQueryContext;
+#else
+using Context = RTCIntersectContext;
+#endif
+
+struct Collecting : Context {
+    std::vector<Hit>* crossings = nullptr;
+};
+
+// Takes note of a hit and refuses it, so that the ray goes on.
+void collect(const RTCFilterFunctionNArguments* hits) {
+    auto& crossings = *static_cast<Collecting*>(hits->context)->crossings;
+    for (unsigned i = 0; i < hits->N; ++i) {
+        if (hits->valid[i] == 0) continue;
+        const Index outer = RTCHitN_instID(hits->hit, hits->N, i, 0);
+        const Index inner = RTCHitN_geomID(hits->hit, hits->N, i);
+        crossings.push_back({.object = outer != RTC_INVALID_GEOMETRY_ID ? outer : inner,
+                             .facet = RTCHitN_primID(hits->hit, hits->N, i)});
+        hits->valid[i] = 0;
+    }
+}
+
+}  // namespace
+
+void find_crossings(RTCScene scene, RTCRay ray, std::vector<Hit>& crossings) {
+    Collecting context;
+    context.crossings = &crossings;
+#if RTC_VERSION_MAJOR >= 4
+    rtcInitRayQueryContext(&context);
+    RTCOccludedArguments how = {};
+    rtcInitOccludedArguments(&how);
+    how.context = &context;
+    how.filter = collect;
+    how.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
+    rtcOccluded1(scene, &ray, &how);
+#else
+    rtcInitIntersectContext(&context);
+    context.filter = collect;
+    rtcOccluded1(scene, &context, &ray);
+#endif
+}
+
 }  // namespace penumbra::embree

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 namespace penumbra::embree {
 
@@ -159,5 +160,8 @@ inline RTCRayHit single_ray(const Vec3& origin, const Vec3& direction, float nea
 inline Index instance_in(const RTCRayHit& ray) {
     return ray.hit.instID[0] != RTC_INVALID_GEOMETRY_ID ? ray.hit.instID[0] : ray.hit.geomID;
 }
+
+/// Adds every facet that a ray crosses, without distances and in no order; one may be there twice.
+void find_crossings(RTCScene scene, RTCRay ray, std::vector<Hit>& crossings);
 
 }  // namespace penumbra::embree

@@ -41,7 +41,12 @@ void attach(const embree::Tree& tree, const embree::Geometry& geometry, Index id
 
 embree::Tree new_tree(const embree::Device& device) {
     embree::Tree tree(rtcNewScene(device.get()));
-    rtcSetSceneFlags(tree.get(), RTC_SCENE_FLAG_ROBUST);
+#if RTC_VERSION_MAJOR >= 4
+    constexpr RTCSceneFlags filters = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
+#else
+    constexpr RTCSceneFlags filters = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+#endif
+    rtcSetSceneFlags(tree.get(), RTC_SCENE_FLAG_ROBUST | filters);
     return tree;
 }
 
@@ -101,10 +106,12 @@ FacetTrees::FacetTrees(const Scene& scene, const FacetTrees* earlier, bool insta
         items_.push_back(item_of(scene, i, shared, earlier));
         instance_of_[instance.mesh] = i;
     }
-    if (earlier != nullptr && same_items(*earlier))
+    if (earlier != nullptr && same_items(*earlier)) {
         top_ = earlier->top_;
-    else
+        translucent_ = earlier->translucent_;
+    } else {
         build_top();
+    }
     wide_ = rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
 }
 
@@ -180,11 +187,21 @@ bool FacetTrees::same_items(const FacetTrees& other) const {
     });
 }
 
-void FacetTrees::build_top() {
-    top_ = new_tree(device_);
-    for (Index i = 0; i < items_.size(); ++i) attach(top_, items_[i].geometry, i);
-    rtcCommitScene(top_.get());
+embree::Tree FacetTrees::tree_over(unsigned mask) const {
+    embree::Tree tree = new_tree(device_);
+    for (Index i = 0; i < items_.size(); ++i)
+        if (((items_[i].opaque ? opaque_mask : translucent_mask) & mask) != 0)
+            attach(tree, items_[i].geometry, i);
+    rtcCommitScene(tree.get());
     embree::check(device_);
+    return tree;
+}
+
+void FacetTrees::build_top() {
+    top_ = tree_over(opaque_mask | translucent_mask);
+    // Light that goes through glass need not look at all that stands around it.
+    const auto clear = std::ranges::count(items_, false, &Item::opaque);
+    translucent_ = std::size_t(clear) == items_.size() ? top_ : tree_over(translucent_mask);
     ++built_;
 }
 

@@ -27,6 +27,10 @@ class FacetTrees {
                         bool instances_move = false);
 
     RTCScene top() const { return top_.get(); }
+    /// Over all facets that the mask takes, and perhaps others.
+    RTCScene over(unsigned mask) const {
+        return mask == translucent_mask ? translucent_.get() : top_.get();
+    }
     bool instanced() const { return instanced_; }  ///< the top tree holds instances
     bool wide() const { return wide_; }            ///< 16 rays a packet are the best, else 8
     bool same_top(const FacetTrees& other) const { return top_ == other.top_; }
@@ -62,10 +66,12 @@ class FacetTrees {
     const Item* same_item(const Scene& scene, const Item& wanted, Index instance) const;
     void add_mesh(const Mesh& mesh, Index index, const FacetTrees* earlier);
     bool same_items(const FacetTrees& other) const;
+    embree::Tree tree_over(unsigned mask) const;
     void build_top();
 
     embree::Device device_ = {};
     embree::Tree top_ = {};
+    embree::Tree translucent_ = {};        // the same, of what light passes
     std::vector<SharedMesh> shared_ = {};  // by mesh
     std::vector<Item> items_ = {};         // by instance
     std::vector<Index> instance_of_ = {};  // by mesh: the last one that shows it

@@ -104,7 +104,7 @@ bool FacetAccel::walk(const Vec3& origin, const Vec3& direction, float from, dou
     float near = from;
     while (true) {
         RTCRayHit ray = embree::single_ray(origin, direction, near, farthest, mask);
-        embree::intersect(trees_.top(), query, ray);
+        embree::intersect(trees_.over(mask), query, ray);
         if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
         const Index instance = embree::instance_in(ray);
         const double t = distance_to(instance, ray.hit.primID, origin, direction);
@@ -263,9 +263,9 @@ bool FacetAccel::blocked_at_small_angle(const ShadowRays& rays, std::size_t i) c
     return exact_blocked(origin, direction, rays.distance[i]);
 }
 
-template <class Width>
-void FacetAccel::block_packets(const ShadowRays& rays, std::span<const Index> asked,
-                               std::span<double> visible) const {
+template <class Width, class Found>
+void FacetAccel::each_occluded_packet(const ShadowRays& rays, std::span<const Index> asked,
+                                      unsigned mask, double near, Found found) const {
     // Embree 3.13's coherent traversal never returns from rtcOccluded16 on instances, so only
     // scenes without them use it. Where mirrors have scattered the points of a packet over the
     // scene its frustum holds nearly all facets: with a million of them under 64 sources the other
@@ -274,9 +274,9 @@ void FacetAccel::block_packets(const ShadowRays& rays, std::span<const Index> as
     const float wide = float(reach_) / 8;
     typename Width::Shadows packet;
     for (std::size_t lane = 0; lane < Width::size; ++lane) {
-        packet.tnear[lane] = float(shadow_margin);
+        packet.tnear[lane] = float(near);
         packet.time[lane] = 0;
-        packet.mask[lane] = opaque_mask;
+        packet.mask[lane] = mask;
         packet.id[lane] = 0;
         packet.flags[lane] = 0;
     }
@@ -297,13 +297,9 @@ void FacetAccel::block_packets(const ShadowRays& rays, std::span<const Index> as
         }
         gather(columns, from);
         embree::Query& query = spread_of_origins<Width>(packet) > wide ? apart : together;
-        embree::occluded(valid.data(), trees_.top(), query, packet);
-        for (std::size_t lane = 0; lane < lanes; ++lane) {
-            const std::size_t i = from[lane];
-            if (packet.tfar[lane] >= 0) continue;
-            if (rays.sin_to_facet[i] >= grazing_sine || blocked_at_small_angle(rays, i))
-                visible[i] = 0;
-        }
+        embree::occluded(valid.data(), trees_.over(mask), query, packet);
+        for (std::size_t lane = 0; lane < lanes; ++lane)
+            if (packet.tfar[lane] < 0) found(from[lane]);
     }
 }
 
@@ -315,13 +311,28 @@ void FacetAccel::closest(const Rays& rays, Hits& hits, bool coherent) const {
         closest_packets<Width8>(rays, hits, coherent);
 }
 
+template <class Found>
+void FacetAccel::each_occluded(const ShadowRays& rays, std::span<const Index> asked, unsigned mask,
+                               double near, Found found) const {
+    if (trees_.wide())
+        each_occluded_packet<Width16>(rays, asked, mask, near, found);
+    else
+        each_occluded_packet<Width8>(rays, asked, mask, near, found);
+}
+
 void FacetAccel::occluded(const ShadowRays& rays, std::span<const Index> asked,
                           std::span<double> visible) const {
     if (empty()) return;
-    if (trees_.wide())
-        block_packets<Width16>(rays, asked, visible);
-    else
-        block_packets<Width8>(rays, asked, visible);
+    each_occluded(rays, asked, opaque_mask, shadow_margin, [&](Index i) {
+        if (rays.sin_to_facet[i] >= grazing_sine || blocked_at_small_angle(rays, i)) visible[i] = 0;
+    });
+}
+
+void FacetAccel::find_filtered(const ShadowRays& rays, std::span<const Index> asked,
+                               std::vector<Index>& filtered) const {
+    filtered.clear();
+    if (translucent_)
+        each_occluded(rays, asked, translucent_mask, 0, [&](Index i) { filtered.push_back(i); });
 }
 
 }  // namespace penumbra

@@ -58,9 +58,17 @@ class FacetAccel {
     void occluded(const ShadowRays& rays, std::span<const Index> asked,
                   std::span<double> visible) const;
 
+    /// Lists those of the shadow rays in `asked` that may cross translucent facets, or start on
+    /// one.
+    void find_filtered(const ShadowRays& rays, std::span<const Index> asked,
+                       std::vector<Index>& filtered) const;
+
     /// The nearest translucent facet with distance in (nearest, farthest).
     bool translucent(const Vec3& origin, const Vec3& direction, double nearest, double farthest,
                      Hit& hit) const;
+    /// All translucent facets with distance in [0, farthest), nearest first.
+    void translucent(const Vec3& origin, const Vec3& direction, double farthest,
+                     std::vector<Hit>& hits) const;
 
   private:
     template <class Width>
@@ -71,8 +79,13 @@ class FacetAccel {
              std::size_t first) const;
     template <class Width>
     void closest_packets(const Rays&, Hits&, bool coherent) const;
-    template <class Width>
-    void block_packets(const ShadowRays&, std::span<const Index>, std::span<double>) const;
+    /// Calls found(ray) for those in `asked` that meet facets of the mask beyond `near`.
+    template <class Found>
+    void each_occluded(const ShadowRays&, std::span<const Index> asked, unsigned mask, double near,
+                       Found found) const;
+    template <class Width, class Found>
+    void each_occluded_packet(const ShadowRays&, std::span<const Index> asked, unsigned mask,
+                              double near, Found found) const;
     /// Offers the facets along a ray, nearest first, to `accept` until it returns true.
     template <class Accept>
     bool walk(const Vec3& origin, const Vec3& direction, float from, double farthest, unsigned mask,
@@ -96,6 +109,29 @@ class FacetAccel {
     bool translucent_ = false;  ///< any facet is
     Vec3 center_ = {};          ///< of the sphere around all facets
     double reach_ = 0;          ///< its radius
+};
+
+/// The translucent facets along a ray, one after another. The first is looked for by itself, for
+/// often there is no other, or it blocks the light; then all others at once.
+class TranslucentFacets {
+  public:
+    /// `scratch` is the room for them.
+    TranslucentFacets(const FacetAccel& facets, const Vec3& origin, const Vec3& direction,
+                      double farthest, std::vector<Hit>& scratch)
+        : facets_(facets), origin_(origin), direction_(direction), farthest_(farthest),
+          all_(scratch) {}
+
+    /// Lowers `hit` to the nearest facet with distance in (nearest, hit.t). Precondition: `nearest`
+    /// never falls.
+    bool next(double nearest, Hit& hit);
+
+  private:
+    const FacetAccel& facets_;
+    Vec3 origin_, direction_;
+    double farthest_;
+    std::vector<Hit>& all_;
+    std::size_t at_ = 0;
+    enum class Known : unsigned char { none, first, all } known_ = Known::none;
 };
 
 }  // namespace penumbra
