@@ -12,6 +12,9 @@ namespace {
 
 constexpr std::size_t block_size = 64;  // neighbouring surface points that are looked at together
 
+// Of LightWork::shown_from, beyond all cosines.
+constexpr double any_source = -2, no_source = 2;
+
 // ---- shadows -----------------------------------------------------------------------------------
 
 // What translucent surfaces leave of the light along the shadow ray from a surface point: a factor
@@ -40,7 +43,8 @@ Vec3 filtered(const PreparedScene& prepared, const SurfacePoints& surfaces, std:
     return light;
 }
 
-// Does light from where `arrival` says show at a point that faces it?
+// Does light from where `arrival` says show at a point that faces it? Where no point of a block
+// shines `reflected` is that of something else, a cosine still.
 bool shows(const LightWork& work, std::size_t i) {
     return work.arrival.share[i] != 0 && work.arrival.reflected[i] >= work.shown_from[i];
 }
@@ -165,7 +169,7 @@ void add_shaded_blocks(const PreparedScene& prepared, const PreparedSource& sour
     for (const std::size_t index : work.shaded) {
         aim(source, surfaces, work.blocks[index], arrival);
         weigh(source, work.blocks[index], arrival);
-        find_reflected(surfaces, work.blocks[index], arrival);
+        if (work.blocks[index].shines) find_reflected(surfaces, work.blocks[index], arrival);
         ask(prepared, surfaces, index, work);
     }
     prepared.facets->occluded(shadow_rays(surfaces, arrival), work.asked, arrival.share);
@@ -200,12 +204,11 @@ void add_light(const PreparedScene& prepared, const SourceGroup& light,
 // The least cosine of the mirrored eye ray at which a source shows: any where light is scattered,
 // and none where neither is.
 double shown_from(const SurfacePoints& surfaces, std::size_t i) {
-    constexpr double any = -2, none = 2;
-    if (surfaces.diffuse[i] > 0) return any;
+    if (surfaces.diffuse[i] > 0) return any_source;
     const PreparedMaterial& material = *surfaces.material[i];
-    if (!material.shines || surfaces.alpha[i] == 0) return none;
+    if (!material.shines || surfaces.alpha[i] == 0) return no_source;
     const auto from = [&](const PreparedLobe& lobe) {
-        return lobe.specular == 0 ? none : lobe.highlight_end;
+        return lobe.specular == 0 ? no_source : lobe.highlight_end;
     };
     const LobeMix& mix = surfaces.lobes[i];
     double least = from(material.lobes[mix.first]);
@@ -219,10 +222,13 @@ void find_blocks(const PreparedScene& prepared, const SurfacePoints& surfaces, L
     work.points.clear();
     for (std::size_t first = 0; first < surfaces.count; first += block_size) {
         Block block = {.first = first, .last = std::min(first + block_size, surfaces.count)};
+        bool lit = false;
         for (std::size_t i = block.first; i < block.last; ++i) {
             block.shines |= surfaces.material[i]->shines && surfaces.alpha[i] > 0;
             work.shown_from[i] = shown_from(surfaces, i);
+            lit |= work.shown_from[i] != no_source;
         }
+        if (!lit) continue;
         work.points.add(prepared, surfaces, {block.first, block.last});
         work.blocks.push_back(block);
     }
@@ -237,6 +243,7 @@ void add_direct_light(const PreparedScene& prepared, const SurfacePoints& surfac
         for (std::size_t i = 0; i < surfaces.count; ++i)
             radiance.axis[c][i] += surfaces.emitted.axis[c][i];
     find_blocks(prepared, surfaces, work);
+    if (work.blocks.empty()) return;
     for (const SourceGroup& light : prepared.lights)
         add_light(prepared, light, surfaces, work, radiance);
 }
