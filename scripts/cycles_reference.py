@@ -5,7 +5,7 @@ Run by `scripts/gallery --cycles`, inside Blender 3.4:
 
 JOBS.json is a list of jobs (see scripts/path_traced.py); places are in glTF's axes, y up. What is
 the same as in penumbra by arrangement, not by physics: the floor is seen by the camera and through
-glass, not in mirrors, throws no shadow and gives no light ("floor_gives_light" lifts that); behind
+glass, not in mirrors, and gives no light unless "floor_gives_light" is true; behind
 the scene lies one colour, also through glass, and the environment is what mirrors show.
 """
 import json

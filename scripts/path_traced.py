@@ -34,8 +34,8 @@ the worst tile of 16 x 16 pixels of the picture; 0 is the same picture. `before`
 drew by default until 0.2 (`--studio black --samples 1`), against the same reference: most of its
 difference in `all` is its black background, so that `model` is the figure to look at.
 
-Arranged to be the same: the floor is seen by the camera and through glass, throws no shadow and
-gives no light; what lies behind the scene is one colour, and mirrors show the environment. Arranged
+Arranged to be the same: the floor is seen by the camera and through glass and sends back the light
+that falls on it; what lies behind the scene is one colour, and mirrors show the environment. Arranged
 as glTF says, where Blender 3.4 does otherwise: the diffuse term is Lambert's (Blender's Burley term is
 up to 1.4 times as bright at grazing light), a coat is a layer of index 1.5 (Blender's has a quarter of
 that), glass without a volume is thin, sheen takes from the base what it gives, and rough metals
@@ -116,7 +116,7 @@ def job_of(asset, options, folder, environment):
             "size": SIZE, "radius": radius,
             "environment": str(environment.resolve()), "albedo": FLOOR_ALBEDO,
             "samples": options.cycles_samples, "diffuse_bounces": options.cycles_bounces,
-            "floor_gives_light": options.cycles_floor_light, "rewire": not options.cycles_burley,
+            "floor_gives_light": not options.cycles_dark_floor, "rewire": not options.cycles_burley,
             "output": str((folder / "cycles.exr").resolve()),
             **seen(options.penumbra, model, folder)}
 

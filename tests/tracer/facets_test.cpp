@@ -239,3 +239,66 @@ TEST_CASE("shadow rays, end in scenes with instances") {
     CHECK(blocked > 20);
     CHECK(blocked < 1000);
 }
+
+TEST_CASE("translucent facets, are the same found one by one and at once") {
+    Random random;
+    Scene scene = random_facets(random, 300);
+    scene.materials.push_back(test::matte());
+    scene.materials.back().opacity = 0.5F;
+    scene.meshes[0].material = 1;
+    Instance second = scene.instances[0];
+    second.transform.setTranslation(Vec3(3, 0, 0));
+    scene.instances.push_back(second);
+    test::add_quad(scene, {-9, 4, -9}, {9, 4, -9}, {9, 4, 9},
+                   {-9, 4, 9});  // opaque: not among them
+    const FacetAccel facets(scene);
+    std::vector<Hit> scratch;
+    int met = 0;
+    for (int k = 0; k < 500; ++k) {
+        const Vec3 from = random.vector(12);
+        const Vec3 way = random.vector(9) - from, direction = way.normalized();
+        const double end = way.length();
+        TranslucentFacets in_turn(facets, from, direction, end, scratch);
+        Hit one = {.t = end}, other = {.t = end};
+        double nearest = 1e-3;
+        for (;;) {
+            const bool found = facets.translucent(from, direction, nearest, end, one);
+            REQUIRE(in_turn.next(nearest, other) == found);
+            if (!found) break;
+            REQUIRE(other.t == one.t);
+            REQUIRE(other.object == one.object);
+            REQUIRE(other.facet == one.facet);
+            nearest = one.t;
+            other = {.t = end};
+            ++met;
+        }
+    }
+    CHECK(met > 1000);
+}
+
+TEST_CASE("shadow rays, that cross translucent facets are all found") {
+    Random random;
+    Scene scene = random_facets(random, 60);
+    scene.materials.push_back(test::matte());
+    scene.materials.back().opacity = 0.5F;
+    scene.meshes[0].material = 1;
+    test::add_quad(scene, {-9, 4, -9}, {9, 4, -9}, {9, 4, 9}, {-9, 4, 9});
+    const FacetAccel facets(scene);
+    constexpr std::size_t count = 500;
+    Shadows shadows(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec3 from = random.vector(12), to = Vec3(0, 20, 0) - from;
+        shadows.set(i, from, to, to.length());
+    }
+    std::vector<Index> asked(count), found;
+    std::iota(asked.begin(), asked.end(), Index(0));
+    facets.find_filtered(shadows.rays(), asked, found);
+    std::vector<Hit> crossed;
+    for (const Index i : asked) {
+        facets.translucent(shadows.origin[i], shadows.direction[i], shadows.distance[i] - 1e-3,
+                           crossed);
+        CHECK(std::ranges::count(found, i) == (crossed.empty() ? 0 : 1));
+    }
+    CHECK(found.size() > 50);
+    CHECK(found.size() < count);
+}

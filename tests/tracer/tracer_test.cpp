@@ -125,6 +125,36 @@ TEST_CASE("highlight, is K_S cos^N of the mirrored eye ray in the light's colour
     }
 }
 
+// Sources cast no shadow rays for points that neither scatter nor mirror them to the eye.
+TEST_CASE("highlight, is the same on a surface that scatters nothing and one that scatters next to "
+          "nothing") {
+    Scene scene = seen_from_above(8);
+    scene.spheres = {{"ball", {1, 1.5, 0}, 0.7, 0}, {"glass", {-1, 1.5, 0.5}, 0.7, 1}};
+    Material glass = test::matte();
+    glass.opacity = 0.3F;
+    glass.transmission = 1;
+    scene.materials.push_back(glass);
+    test::add_quad(scene, {-2, 2, -2}, {0, 2, -2}, {0, 2, 0}, {-2, 2, 0}, 1);
+    Material& m = scene.materials[0];
+    m.specular = 0.75F;
+    m.shininess = 25;
+    m.coat = Coat{.specular = 0.3F, .shininess = 90, .reflection = 0.04F};
+    for (int i = 0; i < 12; ++i)
+        scene.lights.push_back(
+            {.position = {6 * std::sin(i * 0.9), 3 + 0.4 * i, 6 * std::cos(i * 1.3)}});
+    m.diffuse = 0;
+    const Image without = picture(scene);
+    m.diffuse = 1e-9F;
+    const Image with = picture(scene);
+    double most = 0, sum = 0;
+    for (std::size_t i = 0; i < with.pixels.size(); ++i) {
+        most = std::max(most, double(std::abs(with.pixels[i].x - without.pixels[i].x)));
+        sum += with.pixels[i].x;
+    }
+    CHECK(most < 1e-6);
+    CHECK(sum > 100);
+}
+
 TEST_CASE("spot, falls off by a smoothstep in the cosine between its half-angles") {
     Scene scene = seen_from_above(8);
     scene.lights = {{.type = Light::Type::spot,
