@@ -8,6 +8,7 @@
 #include "prepare/complete.h"
 #include "prepare/same_corners.h"
 #include "prepare/small_objects.h"
+#include "prepare/surfaces/narrow_facets.h"
 #include "prepare/surfaces/near_surfaces.h"
 #include "scene/surface/vertex_textures.h"
 #include "scene/transforms.h"
@@ -350,6 +351,9 @@ Imported load_scene(const std::vector<fs::path>& given, const LoadOptions& optio
     const Losses near =
         losses_by_nearness(result.scene, box, result.render.width, result.render.height);
     result.losses.insert(result.losses.end(), near.begin(), near.end());
+    const Losses narrow =
+        losses_by_narrowness(result.scene, box, result.render.width, result.render.height);
+    result.losses.insert(result.losses.end(), narrow.begin(), narrow.end());
     const Losses settled = settle_normal_maps(result.scene, options.normal_maps);
     result.losses.insert(result.losses.end(), settled.begin(), settled.end());
     // What keeps its normal maps is not final: nothing of it can be exported.

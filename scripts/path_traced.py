@@ -34,9 +34,9 @@ the worst tile of 16 x 16 pixels of the picture; 0 is the same picture. `before`
 drew by default until 0.2 (`--studio black --samples 1`), against the same reference: most of its
 difference in `all` is its black background, so that `model` is the figure to look at.
 
-Arranged to be the same: the floor is seen by the camera and through glass and sends back the light
-that falls on it; what lies behind the scene is one colour, and mirrors show the environment. Arranged
-as glTF says, where Blender 3.4 does otherwise: the diffuse term is Lambert's (Blender's Burley term is
+Arranged to be the same: below the horizon the environment is what the studio's floor sends back, and
+the floor itself, which the camera sees and glass shows, gives no light and throws no shadow; what lies
+behind the scene is one colour, and mirrors show the environment. Arranged as glTF says, where Blender 3.4 does otherwise: the diffuse term is Lambert's (Blender's Burley term is
 up to 1.4 times as bright at grazing light), a coat is a layer of index 1.5 (Blender's has a quarter of
 that), glass without a volume is thin, sheen takes from the base what it gives, and rough metals
 lose no light. Not the same: Cycles has light from one surface to another ({bounces} diffuse bounces) and
@@ -97,12 +97,12 @@ def seen(penumbra, model, folder):
 
 
 def studio_image(penumbra, folder):
-    """The studio as penumbra exports it for POV-Ray, where a mirror shows it."""
+    """The studio over its floor as penumbra exports it for POV-Ray, where a mirror shows it."""
     scene = folder / "mirror.toml"
     scene.write_text('[material.mirror]\nreflection = 1\n'
                      '[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = "mirror"\n')
     run(penumbra, "export", scene, "--quiet", "--force", "-o", folder / "mirror.pov")
-    return folder / "mirror_textures/studio.exr"
+    return folder / "mirror_textures/studio_over_its_floor.exr"
 
 
 def job_of(asset, options, folder, environment):
@@ -116,7 +116,7 @@ def job_of(asset, options, folder, environment):
             "size": SIZE, "radius": radius,
             "environment": str(environment.resolve()), "albedo": FLOOR_ALBEDO,
             "samples": options.cycles_samples, "diffuse_bounces": options.cycles_bounces,
-            "floor_gives_light": not options.cycles_dark_floor, "rewire": not options.cycles_burley,
+            "floor_gives_light": options.cycles_floor_light, "rewire": not options.cycles_burley,
             "output": str((folder / "cycles.exr").resolve()),
             **seen(options.penumbra, model, folder)}
 

@@ -1,5 +1,6 @@
 // What is too small for its scene is said.
 #include "prepare/small_objects.h"
+#include "prepare/surfaces/narrow_facets.h"
 #include "prepare/surfaces/near_surfaces.h"
 #include "support/small_scenes.h"
 #include "support/support.h"
@@ -139,4 +140,24 @@ TEST_CASE("Where all objects are smaller than a pixel, the farthest is named") {
     scene.cameras.clear();
     complete(scene, double(width) / height);
     CHECK(losses_of(scene).empty());
+}
+
+// Within half a metre of 20 km nothing is parted from what it lies on.
+TEST_CASE("Facets too narrow to be parted are a loss where they can be seen") {
+    const auto losses_of_sticker = [](float size, float distance) {
+        Scene scene = ground(20000);
+        test::add_quad(scene, {0, 0, 0.001F}, {size, 0, 0.001F}, {size, size, 0.001F},
+                       {0, size, 0.001F});
+        scene.instances.back().name = "sticker";
+        scene.cameras[0].position = {0, 0.5, distance};
+        return losses_by_narrowness(scene, bounds(scene), width, height);
+    };
+    const Losses losses = losses_of_sticker(0.4F, 2);
+    REQUIRE(losses.size() == 1);
+    CHECK(losses[0].kind == Loss::approximated);
+    CHECK(losses[0].count == 2);
+    CHECK(losses[0].what.find("2 facets that can be seen are narrower than 0.49") == 0);
+    CHECK(losses[0].what.find("'sticker'") != std::string::npos);
+    CHECK(losses_of_sticker(2, 2).empty());
+    CHECK(losses_of_sticker(0.4F, 300).empty());  // less than a pixel
 }
