@@ -242,7 +242,7 @@ TEST_CASE("shadow rays, end in scenes with instances") {
 
 TEST_CASE("translucent facets, are the same found one by one and at once") {
     Random random;
-    Scene scene = random_facets(random, 300);
+    Scene scene = random_facets(random, 1000);
     scene.materials.push_back(test::matte());
     scene.materials.back().opacity = 0.5F;
     scene.meshes[0].material = 1;
@@ -278,7 +278,7 @@ TEST_CASE("translucent facets, are the same found one by one and at once") {
 
 TEST_CASE("shadow rays, that cross translucent facets are all found") {
     Random random;
-    Scene scene = random_facets(random, 60);
+    Scene scene = random_facets(random, 300);
     scene.materials.push_back(test::matte());
     scene.materials.back().opacity = 0.5F;
     scene.meshes[0].material = 1;
