@@ -28,7 +28,7 @@ BoxTree make_box_tree(std::vector<BoxedItem> items);
 /// Calls visit(item) for the leaves whose box and whose ancestors' boxes `touches` accepts, until
 /// it returns true. Returns whether it has.
 template <class Touches, class Visit>
-bool visit_boxes(const BoxTree& tree, Touches touches, Visit visit) {
+bool visit_boxes(const BoxTree& tree, const Touches& touches, Visit visit) {
     if (tree.nodes.empty()) return false;
     std::array<Index, 64> waiting{};  // a median split is at most 32 levels deep
     std::size_t depth = 0;
