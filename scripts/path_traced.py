@@ -36,9 +36,9 @@ difference in `all` is its black background, so that `model` is the figure to lo
 
 Arranged to be the same: below the horizon the environment is what the studio's floor sends back, and
 the floor itself, which the camera sees and glass shows, gives no light and throws no shadow; what lies
-behind the scene is one colour, and mirrors show the environment. Arranged as glTF says, where Blender 3.4 does otherwise: the diffuse term is Lambert's (Blender's Burley term is
-up to 1.4 times as bright at grazing light), a coat is a layer of index 1.5 (Blender's has a quarter of
-that), glass without a volume is thin, sheen takes from the base what it gives, and rough metals
+behind the scene is one colour, and mirrors show the environment. Arranged as glTF says, where Blender
+3.4 does otherwise: the diffuse term is Lambert's (Blender's Burley term is up to 1.4 times
+as bright at grazing light), a coat is a layer of index 1.5 (Blender's has a quarter of that), glass without a volume is thin, sheen takes from the base what it gives, and rough metals
 lose no light. Not the same: Cycles has light from one surface to another ({bounces} diffuse bounces) and
 shows both sides of every surface; Blender's importer leaves out anisotropy, iridescence and the
 vertex colours of meshes without a material.

@@ -1,6 +1,7 @@
 #include "prepare/surfaces/narrow_facets.h"
 
 #include "prepare/scale.h"
+#include "prepare/surfaces/seen.h"
 #include "prepare/surfaces/world_facets.h"
 #include "scene/transforms.h"
 
@@ -11,18 +12,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <string>
 
 namespace penumbra {
 
 namespace {
-
-double distance(const Vec3& from, const Bounds& box) {
-    Vec3 way(0);
-    for (int axis = 0; axis < 3; ++axis)
-        way[axis] = std::max({box.min[axis] - from[axis], 0.0, from[axis] - box.max[axis]});
-    return way.length();
-}
 
 // The camera's pixels.
 struct Pixels {
@@ -31,11 +24,6 @@ struct Pixels {
     bool orthographic = false;
 
     double at(const Bounds& box) const { return orthographic ? width : width * distance(eye, box); }
-};
-
-struct Narrow {
-    std::size_t count = 0;
-    Index instance = no_index;  // of the first
 };
 
 // Counts the facets of an instance that are narrower than `least`, and a pixel wide.
@@ -57,12 +45,6 @@ std::size_t narrow_facets(const Scene& scene, const Instance& instance, const Pi
     return count;
 }
 
-std::string name_of(const Scene& scene, Index instance) {
-    const Instance& i = scene.instances[instance];
-    const std::string& name = i.name.empty() ? scene.meshes[i.mesh].name : i.name;
-    return name.empty() ? fmt::format("object {}", instance + 1) : "'" + name + "'";
-}
-
 }  // namespace
 
 Losses losses_by_narrowness(const Scene& scene, const Bounds& box, int width, int height) {
@@ -70,7 +52,8 @@ Losses losses_by_narrowness(const Scene& scene, const Bounds& box, int width, in
     const double least = least_overlap / normalising_factor(box);
     const View view = view_of(scene.cameras[scene.camera], width, height);
     const Pixels pixels = {view.location, view.up.length() / height, view.orthographic};
-    Narrow narrow;
+    std::size_t narrow = 0;
+    Index first = no_index;
     for (Index i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const Mesh& mesh = scene.meshes[instance.mesh];
@@ -78,17 +61,17 @@ Losses losses_by_narrowness(const Scene& scene, const Bounds& box, int width, in
         if (pixels.at(transformed(box_around(mesh.positions), instance.transform)) >= least)
             continue;
         const std::size_t count = narrow_facets(scene, instance, pixels, least);
-        if (count > 0 && narrow.count == 0) narrow.instance = i;
-        narrow.count += count;
+        if (count > 0 && narrow == 0) first = i;
+        narrow += count;
     }
-    if (narrow.count == 0) return {};
+    if (narrow == 0) return {};
     return {
         {Loss::approximated, "tolerances",
          fmt::format("{} facets that can be seen are narrower than {:.2g}, too small to be told "
                      "from what they lie on in a scene that measures {:.3g} across: what is "
                      "close behind them and their shadows may be lost; the first is of {}",
-                     narrow.count, least, 2 * box.radius(), name_of(scene, narrow.instance)),
-         narrow.count}};
+                     narrow, least, 2 * box.radius(), described(scene, first)),
+         narrow}};
 }
 
 }  // namespace penumbra

@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "prepare/surfaces/facet_overlaps.h"
+#include "prepare/surfaces/seen.h"
 #include "prepare/surfaces/world_facets.h"
 
 #include "penumbra/light_model.h"
@@ -12,7 +13,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <string>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -37,13 +37,6 @@ bool touch(const Bounds& a, const Bounds& b) {
     for (int axis = 0; axis < 3; ++axis)
         if (a.min[axis] > b.max[axis] || b.min[axis] > a.max[axis]) return false;
     return true;
-}
-
-double distance(const Vec3& from, const Bounds& box) {
-    Vec3 way(0);
-    for (int axis = 0; axis < 3; ++axis)
-        way[axis] = std::max({box.min[axis] - from[axis], 0.0, from[axis] - box.max[axis]});
-    return way.length();
 }
 
 Bounds box_of(const WorldFacet& facet) {
@@ -160,12 +153,6 @@ class NearSurfaces {
     Near near_;
 };
 
-std::string name_of(const Scene& scene, Index instance) {
-    const Instance& i = scene.instances[instance];
-    const std::string& name = i.name.empty() ? scene.meshes[i.mesh].name : i.name;
-    return name.empty() ? fmt::format("object {}", instance + 1) : "'" + name + "'";
-}
-
 }  // namespace
 
 Losses losses_by_nearness(const Scene& scene, const Bounds& box, int width, int height) {
@@ -178,8 +165,8 @@ Losses losses_by_nearness(const Scene& scene, const Bounds& box, int width, int 
                          "tolerance leaves out shadows in a scene that measures {:.3g} across; the "
                          "nearest is of {}, {:.2g} from {}",
                          near.count, shadow_margin / surfaces.factor(), 2 * box.radius(),
-                         name_of(scene, near.caster), near.gap / surfaces.factor(),
-                         name_of(scene, near.other)),
+                         described(scene, near.caster), near.gap / surfaces.factor(),
+                         described(scene, near.other)),
              near.count}};
 }
 
